@@ -19,11 +19,10 @@ from matplotlib.figure import Figure
 import fingerpad as fp
 from benchmarks import harness
 from fingerpad.reduced.default_finger import Similar, similar
-from fingerpad.reduced.registry import find
 from fingerpad.results.pictures import style
 from fingerpad.runs.batch import Summary
 from fingerpad.runs.context import RunContext
-from fingerpad.runs.solve import solved
+from fingerpad.runs.solve import find, solved
 from fingerpad.scene import Scene
 from fingerpad.scene.fingers import ADULT, FINGERS, Trait
 

@@ -15,11 +15,10 @@ from itertools import product
 
 import numpy as np
 
-from variational.roughness import tables
-from variational.roughness.contacts import gap_table
-from variational.roughness.gaps import GapTable
+from variational.roughness import gaps
+from variational.roughness.gaps import HURSTS, RATIOS, GapTable, save, shipped_file
+from variational.roughness.halfspace import gap_table
 from variational.roughness.spectrum import SelfAffine
-from variational.roughness.tables import HURSTS, RATIOS, save, shipped_file
 from variational.roughness.topography import HeightMap
 
 PIXELS, LEAST = 4, 256  # pixels to the shortest wave; in a side, least
@@ -37,7 +36,7 @@ def surfaces(
         pixels: to a shortest wave, at least.
         hurst: Hurst exponent.
     """
-    waves = waves or tables.waves(ratio)
+    waves = waves or gaps.waves(ratio)
     count = count or (12 if ratio == RATIOS[-1] and hurst == 0.75 else 6)
     longest, n = 2 * np.pi, max(round(waves * ratio * pixels), LEAST)
     spectrum = SelfAffine(1.0, hurst, longest, plateau=False, shortest=longest / ratio)

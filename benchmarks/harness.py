@@ -229,7 +229,7 @@ def picture(path: Path, size: tuple[float, float], paint: Callable[[Figure], Non
     """Have a figure of width and height (inches) painted into a PNG."""
     path.parent.mkdir(parents=True, exist_ok=True)
     with style.look():
-        figure = style.figure(size[1], size[0])
+        figure = style.figure(size[1], width=size[0])
         paint(figure)
         figure.savefig(path)
 

@@ -32,8 +32,8 @@ import numpy as np
 from mpi4py import MPI
 
 from benchmarks import harness
-from fingerpad.accuracy.solves import solve_again
-from fingerpad.accuracy.states import Solve, StateRecorder
+from fingerpad.accuracy.solves import StateRecorder, solve_again
+from fingerpad.accuracy.states import Solve
 from fingerpad.model.finger import Step
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.simulation import Simulation

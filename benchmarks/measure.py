@@ -57,7 +57,7 @@ _WATCHED: dict[str, list[tuple[Any, str]]] = {
     "tangent": [(Equations, "assemble_tangent")],
     "stability": [(StabilityChecks, "check")],
     "coupling": [(Observer, "state"), (Observer, "ridge_loads")],
-    "output": [(Report, "step"), (Report, "load_reached"), (Report, "final"), (Drawing, "write"), (dataset, "save")],
+    "output": [(Report, "step"), (Report, "load_reached"), (Report, "final"), (Drawing, "write"), (dataset, "content")],
 }
 _EVENTS = {"MatLUFactorSym": "factorisation", "MatLUFactorNum": "factorisation", "MatSolve": "back-substitution"}
 

@@ -27,8 +27,8 @@ from benchmarks.accuracy import drawn
 from benchmarks.errors import STATES, parted
 from fingerpad.accuracy.refinement import Refinement
 from fingerpad.accuracy.richardson import SITES, TWO, of_two_meshes, value
-from fingerpad.accuracy.solves import Solves, solve_again
-from fingerpad.accuracy.states import Solve, StateRecorder
+from fingerpad.accuracy.solves import StateRecorder, solve_again
+from fingerpad.accuracy.states import Solve
 from fingerpad.model.finger import Step
 from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.model.simulation import RestartRequired, Simulation
@@ -64,7 +64,7 @@ def _refined(model: FingerModel) -> Refinement:
         if restart is None:
             path = recorder.solve()
             simulation.finger.solver.iteration.free()
-            refinement = Refinement(Solves(model, path, MPI.COMM_WORLD, show, lambda: None))
+            refinement = Refinement(model, path, MPI.COMM_WORLD, show, lambda: None)
             restart = refinement.run()
             if restart is None:
                 return refinement
@@ -78,7 +78,7 @@ def _solve(scene: Scene) -> dict[str, Any]:
         raise RuntimeError("; ".join(refinement.notes))
     final, model = refinement.base, refinement.model
     sizes = model.coarser(final.mesh)
-    coarse = next(solve for solve in refinement.solves.found if solve.mesh == sizes)
+    coarse = next(solve for solve in refinement.found if solve.mesh == sizes)
     finer = solve_again(model.changed(mesh=final.mesh.scaled(0.5)), final.states, MPI.COMM_WORLD)
     return {"path_is_coarse": model.mesh == sizes} | {
         name: _summary(solve) for name, solve in zip(MESHES, (coarse, final, finer), strict=True)

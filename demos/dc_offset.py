@@ -13,7 +13,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import fingerpad as fp
-from variational.attraction.network import Network
+from variational.attraction.circuit import Network
 
 LAYERS = {"gap": 1.6e-6, "d_i": 1e-6, "eps_i": 3.9, "d_sc": 425e-6}  # m, 1, m
 SINE = {"waveform": "sine", "amplitude": 100.0, "frequency": 50.0}

@@ -58,13 +58,13 @@ def end_at_ctrl_c() -> None:
 @contextmanager
 def raising_at_ctrl_c() -> Iterator[None]:
     """Let Ctrl-C raise KeyboardInterrupt inside the block, so that the block can clean up."""
-    ends = signal.getsignal(signal.SIGINT) is _end
+    before = signal.getsignal(signal.SIGINT)
     try:
-        if ends:
+        if before is _end:
             signal.signal(signal.SIGINT, signal.default_int_handler)
         yield
     finally:
-        if ends:
+        if before is _end:
             signal.signal(signal.SIGINT, _end)
 
 
@@ -119,14 +119,13 @@ def need_compiler() -> None:
     Raises:
         ImportError: there is no C compiler, or no headers of Python; its name is :data:`COMPILER`.
     """
-    words = shlex.split(os.environ.get("CC") or sysconfig.get_config_var("CC") or "cc")
-    headers = Path(sysconfig.get_path("include"))
-    if shutil.which(words[0]) is None:
-        missing, package = f"a C compiler, and {words[0]} is not on the path", "gcc"
-    elif not (headers / "Python.h").is_file():
-        missing, package = f"Python's headers, and {headers / 'Python.h'} is not there", "python3-dev"
-    else:
+    compiler = shlex.split(os.environ.get("CC") or sysconfig.get_config_var("CC") or "cc")[0]
+    header = Path(sysconfig.get_path("include"), "Python.h")
+    if shutil.which(compiler) and header.is_file():
         return
+    missing, package = f"Python's headers, and {header} is not there", "python3-dev"
+    if shutil.which(compiler) is None:
+        missing, package = f"a C compiler, and {compiler} is not on the path", "gcc"
     raise ImportError(
         f"finite elements are compiled for each form, which needs {missing}; Debian and Ubuntu have it in {package}",
         name=COMPILER,

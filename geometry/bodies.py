@@ -11,11 +11,11 @@ import gmsh
 import numpy as np
 
 from geometry import tags
-from geometry.curved import curve_edges
 from geometry.parameters import LEAST_SIZE, MeshSize
 from geometry.profiles import GeometryError
 from geometry.shape import shape
 from geometry.sizing import FROM_EDGES
+from geometry.triangles import curve_edges
 
 _MM = 1e3  # gmsh's tolerances suit models in mm
 _SAMPLES = 128  # spline points of a curved bottom

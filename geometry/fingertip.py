@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry import tags
-from geometry.curved import unfold
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import Profiles
 from geometry.reflection import HalfMesh, swap_corners
 from geometry.shape import shape
 from geometry.sizing import FROM_EDGES, check, growth_from_tips, touching_ridges
+from geometry.triangles import unfold
 
 Array = NDArray[np.float64]
 _MM = 1e3  # gmsh's tolerances suit models in mm

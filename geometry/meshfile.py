@@ -29,10 +29,9 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from geometry import tags
-from geometry.curved import refuse_folded
-from geometry.meshchecks import FLAT, refuse_misplaced, refuse_misshapen, refuse_unconnected
 from geometry.profiles import GeometryError
 from geometry.shape import shape
+from geometry.triangles import FLAT, refuse_folded, refuse_misplaced, refuse_misshapen, refuse_unconnected
 from variational import files
 
 FACETS = {

@@ -12,9 +12,8 @@ from typing import Any, ParamSpec
 import gmsh
 import numpy as np
 
-from geometry.curved import refuse_folded, second_order, triangles_and_skin
-from geometry.meshchecks import refuse_corners
 from geometry.profiles import GeometryError
+from geometry.triangles import refuse_corners, refuse_folded, second_order, triangles_and_skin
 
 P = ParamSpec("P")
 

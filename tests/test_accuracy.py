@@ -8,11 +8,10 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from fingerpad.accuracy import solves
+from fingerpad.accuracy import refinement as refining
 from fingerpad.accuracy.estimate import with_errors
 from fingerpad.accuracy.refinement import Refinement
 from fingerpad.accuracy.richardson import MORE, ONCE, ORDER
-from fingerpad.accuracy.solves import Solves
 from fingerpad.accuracy.states import Solve, State
 from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.results.interrupt import Interrupted
@@ -62,13 +61,13 @@ def known(model, states, comm, views=False, stiffer=None) -> Solve:
 
 
 def refinement(model, path, show=lambda text: None, pause=lambda: None) -> Refinement:
-    return Refinement(Solves(model, path, MPI.COMM_SELF, show, pause))
+    return Refinement(model, path, MPI.COMM_SELF, show, pause)
 
 
 def search(monkeypatch, asked, solve=known, pause=lambda: None) -> Refinement:
     memory = {"numerics": {"memory": 1e15}}  # of solves that are none
     model = model_of(({"accuracy": asked} if asked else {}) | memory)
-    monkeypatch.setattr(solves, "solve_again", solve)
+    monkeypatch.setattr(refining, "solve_again", solve)
     found = refinement(model, known(model, {}, MPI.COMM_SELF), pause=pause)
     found.run()
     return found
@@ -111,9 +110,9 @@ def test_steps_are_halved_where_normal_contact_feels_them(monkeypatch):
         search.found.append(found)
         return found
 
-    monkeypatch.setattr(solves.Solves, "with_steps", with_steps)
+    monkeypatch.setattr(Refinement, "_with_steps", with_steps)
     monkeypatch.setattr(
-        solves, "solve_again", lambda model, states, *others: Solve(dict(states), model.mesh, 1000, 10, 1.0)
+        refining, "solve_again", lambda model, states, *others: Solve(dict(states), model.mesh, 1000, 10, 1.0)
     )
     model = model_of({"accuracy": {"contact_length": 0.04}, "numerics": {"step_scale": 2.0}})
     path = stepped(1.0, model.mesh)
@@ -124,17 +123,6 @@ def test_steps_are_halved_where_normal_contact_feels_them(monkeypatch):
     assert found.base.values()["charged_contact_length"] == pytest.approx(1.025e-3, rel=1e-12)
     assert found.estimates()["charged_contact_length"] == pytest.approx(MORE * 0.025e-3, rel=1e-9)
     assert found.summary()["step_scale"] == 0.5, "a quarter of the scene's"
-
-
-def test_receptors_are_halved_where_energy_density_is_asked_for(monkeypatch):
-    """What is allowed is a part of the largest site's; of the second site's own it is never asked for."""
-    found = search(monkeypatch, {"sed": 0.005})
-    assert found.refinements["receptor"] > 1
-    assert found.refinements["contact"] == 1
-    largest = found.base.values()["full_slip_sed_0"]
-    assert found.allowed() == pytest.approx(
-        {"full_slip_sed_0": 0.005 * largest, "full_slip_sed_1": 0.005 * largest}, rel=1e-12
-    )
 
 
 def springs(model, states, comm, views=False, stiffer=None) -> Solve:
@@ -149,7 +137,7 @@ def springs(model, states, comm, views=False, stiffer=None) -> Solve:
 
 def test_what_the_penalty_changes_is_told_beside_the_error(monkeypatch):
     """A rigid screen takes off what the springs put on, which is the whole error where that of the mesh is nothing."""
-    monkeypatch.setattr(solves, "solve_again", springs)
+    monkeypatch.setattr(refining, "solve_again", springs)
     model, lines = model_of({}), list[str]()
     path = springs(model, {}, MPI.COMM_SELF)
     found = refinement(model, path, lines.append)
@@ -164,7 +152,7 @@ def test_what_the_penalty_changes_is_told_beside_the_error(monkeypatch):
 
 def test_output_of_ones_own_has_its_error_from_the_same_two_meshes(monkeypatch):
     """Of first order: on elements half as large as much again is left as the last halving changed, times two."""
-    monkeypatch.setattr(solves, "solve_again", known)
+    monkeypatch.setattr(refining, "solve_again", known)
     model, twice = model_of({}), Output("twice", "", lambda state: 2 * state.mu_app)
     skin = Output("skin", "Pa", lambda state: state.skin.p_n.max())
     path = known(model, {}, MPI.COMM_SELF)
@@ -217,17 +205,6 @@ def test_accuracy_out_of_reach_is_a_failure_and_an_estimate_a_note(monkeypatch, 
     assert bool(found.estimates()) == (solve not in (lost,))
 
 
-def test_coefficient_without_full_slip_or_without_a_force_is_refused():
-    """A finger that slides while nothing presses it has a friction force, and no coefficient to be within 1 %."""
-    model = model_of({"accuracy": {"mu_app": 0.01}})
-    path = known(model, {}, None)
-    with pytest.raises(StepFailed, match="accuracy.mu_app is 0.01, which full slip decides"):
-        refinement(model, Solve({"charged": path.states["full_slip"]}, model.mesh, 1000, 10, 1.0))
-    change(path, mu_app=np.nan)
-    with pytest.raises(StepFailed, match="at full slip no force presses the finger.* ask for accuracy.f_t"):
-        refinement(model, path)
-
-
 @pytest.mark.parametrize(("step", "final"), [(7, True), (3, False)])
 def test_uncharged_state_that_is_the_charged_one_is_of_the_final_mesh(monkeypatch, step, final):
     """At 0 V they are one step of the path. Another step that is not solved again stays."""
@@ -237,7 +214,7 @@ def test_uncharged_state_that_is_the_charged_one_is_of_the_final_mesh(monkeypatc
         state = State(NOTHING, 0, row, np.array([1e-3]), np.zeros(1), np.ones(1), {}, model.mesh.contact)
         return Solve({"charged": state}, model.mesh, 1000, 10, 1.0)
 
-    monkeypatch.setattr(solves, "solve_again", solve)
+    monkeypatch.setattr(refining, "solve_again", solve)
     model = model_of({"contact": {"formulation": "nitsche"}})
     found = refinement(model, solve(model, {}, None))
     found.run()
@@ -250,7 +227,7 @@ def test_uncharged_state_that_is_the_charged_one_is_of_the_final_mesh(monkeypatc
 def test_interrupted_search_reached_nothing(monkeypatch):
     """Neither before its first solve nor between two, and that is no accuracy out of reach; what ends by itself did."""
     model = model_of({"accuracy": {"mu_app": 0.01}, "numerics": {"memory": 1e15}})
-    monkeypatch.setattr(solves, "solve_again", known)
+    monkeypatch.setattr(refining, "solve_again", known)
     for solves_before in (0, 2):
         to_come = iter(range(solves_before))
 
@@ -275,7 +252,7 @@ def test_errors_without_a_force_are_those_of_the_friction_force(monkeypatch):
         return solve
 
     model, shown = model_of({"numerics": {"memory": 1e15}}), []
-    monkeypatch.setattr(solves, "solve_again", unpressed)
+    monkeypatch.setattr(refining, "solve_again", unpressed)
     found = refinement(model, unpressed(model, {}, MPI.COMM_SELF), shown.append)
     found.run()
     assert "full_slip_f_t" in found.estimates() and "full_slip_mu_app" not in found.estimates()

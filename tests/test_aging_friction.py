@@ -5,8 +5,9 @@ import pytest
 from mpi4py import MPI
 
 import fingerpad as fp
-from fingerpad.scene import SceneError
-from fingerpad.scene.remarks import remarks
+from fingerpad.model.cautions import examine
+from fingerpad.model.schedule import targets
+from fingerpad.scene import Load, SceneError
 from geometry import tags
 from geometry.bodies import block, ridge
 from geometry.mesh import load
@@ -20,7 +21,7 @@ from variational.contact.nitsche import Nitsche
 from variational.contact.penalty import Penalty
 from variational.energy import EnergyBook
 from variational.materials.ogden import Ogden
-from variational.solvers.continuation import Target
+from variational.solvers.target import Control, Progress, Target, Way
 
 pytestmark = pytest.mark.mpi
 GROWS = Occlusion(mu_dry=0.2, mu_wet=0.8, time=0.5)
@@ -117,9 +118,7 @@ def test_scene():
     ("friction", "message"),
     [
         (OCCLUSION | {"time": 0}, "friction.time is 0 s; it must be from 1e-06"),
-        (OCCLUSION | {"time": "-1 s"}, "friction.time is -1 s"),
         ({"law": "Occlusion", "mu_dry": 0.3}, "friction.mu_wet is missing"),
-        ({"law": "Speed", "mu_f": 0.3, "v_0": "3 m"}, "friction.v_0 is '3 m'; its unit is not a unit of speed"),
     ],
 )
 def test_refused(friction, message):
@@ -130,8 +129,48 @@ def test_refused(friction, message):
 def test_without_time():
     """Without a load over time a remark says so; newtons and models without time are refused."""
     scene = fp.Scene(friction=OCCLUSION)
-    assert [text for text in remarks(scene) if "friction is Occlusion and no load takes time" in text]
+    assert [
+        text for text in map(str, examine("scene", scene)) if "friction is Occlusion and no load takes time" in text
+    ]
     with pytest.raises(SceneError, match="force is given and friction has a memory"):
         fp.Scene(force=0.5, friction=OCCLUSION)
     with pytest.raises(SceneError, match="friction is Occlusion; the model 'cylinders' has no time"):
         fp.run(scene, model="cylinders")
+
+
+# -- how long a step may be where laws depend on time ----------------------------------------------------------------
+TAU = 4e-3  # s
+
+
+def longest(part: float = 0.0, **of_target: float) -> float:
+    """Return the longest step (s) of a target after a part of it."""
+    start = Progress(Control(), 0.0, 0.0, np.zeros(2), 0.0, 0)
+    target = Target("load", **of_target)
+    return Way(start, target).longest(part, TAU) * target.duration
+
+
+def test_after_a_change_at_once():
+    """A quarter of the time since then with the shortest time added."""
+    assert longest(duration=1.0) == pytest.approx(TAU / 4)
+    assert longest(0.1, duration=1.0) == pytest.approx((TAU + 0.1) / 4)
+
+
+def test_between_samples():
+    """Time since a change counts up to 1.5 shortest times: 0.625 of that time is the longest first step."""
+    assert longest(duration=0.1, since=1e-3) == pytest.approx((TAU + 1e-3) / 4)
+    assert longest(duration=0.1, since=10.0) == pytest.approx(0.625 * TAU)
+    assert longest(0.5, duration=0.1, since=10.0) == pytest.approx((2.5 * TAU + 0.05) / 4)
+
+
+def test_pieces_of_a_square():
+    """Each jump of the voltage begins the time anew; pieces after it go on."""
+    wave = {"waveform": "square", "amplitude": 50.0, "frequency": 10.0}
+    found = targets(Load(name="wave", duration=0.2, voltage=wave), 0.0, 1.0)[1:]
+    jumps = [k for k, each in enumerate(found) if each.duration == 0.0]
+    assert len(jumps) >= 3
+    time = since = 0.0
+    for each in found:
+        since = 0.0 if each.duration == 0.0 else since
+        assert each.since == pytest.approx(since, abs=1e-12)
+        time, since = time + each.duration, since + each.duration
+    assert time == pytest.approx(0.2)

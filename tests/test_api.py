@@ -1,24 +1,16 @@
 """The door: what import fingerpad gives, a run with and without a folder, results that are read again, sweeps."""
 
 import json
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 from mpi4py import MPI
 
 import fingerpad as fp
-from fingerpad import runs
-from fingerpad.results.data import Cost
-from fingerpad.results.dataset import content
 from fingerpad.results.quantities import CONDITIONS, RESULTS
 from fingerpad.results.states import STATES
-from fingerpad.runs import attempt, full
-from fingerpad.runs.processes import End
-from fingerpad.runs.restarts import finer_mesh_may_help
+from fingerpad.runs import full
 from fingerpad.scene import SceneError, from_data
-from tests.measures import contact_state
 from tests.runs import no_pictures
 from tests.small_finger import NINE
 from variational.solvers.continuation import StepFailed
@@ -94,14 +86,6 @@ def test_arrays_have_documented_shapes(ran):
     np.testing.assert_allclose(np.abs(skin.t_t[touching]), 0.25 * skin.p_n[touching], rtol=1e-7)
 
 
-def test_model_without_its_libraries_is_refused_in_a_sentence(monkeypatch):
-    monkeypatch.setitem(sys.modules, "fingerpad.runs.full", None)
-    monkeypatch.delattr(runs, "full", raising=False)
-    monkeypatch.setattr("fingerpad.launcher.OPTIONAL", ("fingerpad",))
-    with pytest.raises(ImportError, match="the model 'full' needs fingerpad, which is not installed;"):
-        fp.run(from_data(SMALL))
-
-
 def test_failure_is_a_warning():
     """A finger without enough ridges; the states before are there."""
     few = {"f_ext": 10.0, "geometry": {"ridge_count": 5}, "output": {"receptors": False, "errors": False}}
@@ -122,26 +106,18 @@ def test_signal_ends_the_program_after_the_step(monkeypatch, name, error):
 
 
 # -- smaller elements by itself ----------------------------------------------------------------------------
-@pytest.mark.parametrize(
-    ("reason", "helps"), [("DIVERGED_LOCAL_MIN", True), ("COUPLING_CAP at ridge 1", False), ("NOT_A_NUMBER", False)]
-)
-def test_smaller_elements_are_tried_where_that_is_the_advice(reason, helps):
-    lost = StepFailed("lost")
-    lost.__cause__ = NotConverged(reason, False)
-    assert finer_mesh_may_help(lost, coarse_start=False) is helps
-    assert finer_mesh_may_help(lost, coarse_start=True)
 
 
 def test_a_run_starts_again_with_smaller_elements(monkeypatch):
     """Every solve of 40 um elements fails; with 20 um the loads are reached, and the result says what was tried."""
-    solve = attempt.Simulation.run
+    solve = full.Simulation.run
 
     def lost(self):
         if self.finger.contact_size > 30e-6:
             raise StepFailed("no equilibrium") from NotConverged("DIVERGED_LOCAL_MIN", False)
         return solve(self)
 
-    monkeypatch.setattr(attempt.Simulation, "run", lost)
+    monkeypatch.setattr(full.Simulation, "run", lost)
     lean = {"history": [{"name": "press", "f_ext": 0.5}], "output": {"receptors": False, "errors": False}}
     found = fp.run(from_data({key: SMALL[key] for key in ("geometry", "mesh")} | lean))
     assert not found.failure and found.charged.mesh_contact == 20e-6
@@ -150,26 +126,6 @@ def test_a_run_starts_again_with_smaller_elements(monkeypatch):
 
 
 # -- sweeps ------------------------------------------------------------------------------------------------
-def test_sweep_is_taken_up_again(tmp_path, monkeypatch):
-    """One of two points is there; the other one is run, and its crash is in the table."""
-    asked = []
-
-    def run(module, arguments, limit, folders):
-        scene = json.loads(Path(arguments[0]).read_text(encoding="utf-8"))
-        asked.append((scene["voltage"], arguments[3]))
-        if scene["voltage"] > 0:
-            return End(1, "CRASH_1", "out of luck", "")
-        done = fp.Result(from_data(scene), "full", None, None, contact_state(mu_app=0.52), cost=Cost(1.0))
-        (Path(arguments[1]) / "result.nc").write_bytes(content(done.to_xarray()))
-        (Path(arguments[1]) / "summary.json").write_text(json.dumps(done.to_dict()), encoding="utf-8")
-        return End(0, "", "", "")
-
-    monkeypatch.setattr("fingerpad.runs.batch.run", run)
-    for _ in range(2):
-        found = fp.sweep(fp.Scene(), tmp_path, voltage=[0.0, 100.0])
-    assert asked == [(0.0, "full"), (100.0, "full"), (100.0, "full")]
-    assert found[0].full_slip.mu_app == 0.52 and found[1].failure == "CRASH_1: out of luck"
-    assert "out of luck" in str(found)
 
 
 @pytest.mark.parametrize(
@@ -177,7 +133,6 @@ def test_sweep_is_taken_up_again(tmp_path, monkeypatch):
     [
         ({}, "the sweep has no axis"),
         ({"geometry.ridge_profile": [[1.0], [1.0, -0.1]]}, "it must be a list of at least one value, none a list"),
-        ({"volt": [1.0]}, "did you mean voltage"),
         (dict.fromkeys(("voltage", "f_ext"), list(range(1, 201))), "the sweep has 40000 points; at most 10000"),
     ],
 )
@@ -186,27 +141,7 @@ def test_sweep_that_makes_no_sense_is_refused(tmp_path, axes, words):
         fp.sweep(fp.Scene(), tmp_path, model="cylinders", **axes)
 
 
-def test_point_that_cannot_be_run_is_a_failure_of_its_own(tmp_path, monkeypatch):
-    """A finger whose bone touches the skin, beside one that can be meshed: one sentence, and no process."""
-    asked = []
-    monkeypatch.setattr("fingerpad.runs.batch.run", lambda *given: asked.append(given) or End(1, "CRASH_1", "gone", ""))
-    found = fp.sweep(fp.Scene(), tmp_path, **{"geometry.bone_centre": [2e-3, 8e-3]})
-    assert len(asked) == 1 and found[1].failure == "CRASH_1: gone"
-    assert found[0].failure.startswith("the bone touches the skin's layers") and "\n" not in found[0].failure
-
-
 def test_sweep_under_a_launcher_of_mpi_is_refused(monkeypatch, tmp_path):
     monkeypatch.setenv("OMPI_COMM_WORLD_SIZE", "2")
     with pytest.raises(fp.SceneError, match="start it without mpirun"):
         fp.sweep(fp.Scene(), tmp_path, voltage=[0.0])
-
-
-def test_what_results_do_not_have_is_refused(ran, tmp_path):
-    """Each in a sentence that names what there is."""
-    found = fp.sweep(fp.Scene(), tmp_path, model="cylinders", voltage=[0.0])
-    with pytest.raises(ValueError, match="quantity is 'stable'; it must be one of f_ext"):
-        found.array("stable")
-    with pytest.raises(ValueError, match="state is 'slip'; it must be one of uncharged, charged, full_slip"):
-        found.array("mu_app", "slip")
-    with pytest.raises(ValueError, match="kind is 'movie'; it must be one of surface, finger, history, footprint"):
-        ran[0].plot("movie")

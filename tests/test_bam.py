@@ -95,8 +95,3 @@ def test_sticking_voltage_rises_with_insulator_roughness_and_modulus(key, gamma)
         True
     }
     assert key == "young" or None in found
-
-
-def test_no_equilibrium_is_an_error(bam):
-    with pytest.raises(ValueError, match="p_ext is -4000 Pa; at 200 V"):
-        bam.air_gap_at_external(-4e3, 200.0)

@@ -65,13 +65,6 @@ def test_closures_are_no_neighbours():
     assert list(chains(every, 1)) == [["0", "1", "2"], ["3"], ["4"], ["5"]]
 
 
-def test_long_chains_are_shared_among_the_jobs():
-    every = scenes(voltage=[float(v) for v in range(20)])
-    assert [len(names) for names in chains(every, 2)] == [10, 10]
-    assert [name for names in chains(every, 5) for name in names] == list(every)
-    assert len(list(chains(every, 5))) == 2, "a chain is not so short that its path takes most of the time"
-
-
 class Skin:
     """In place of a finger: below 60 V there are 3 ridges, above 80 V 5, and between as many as there were before."""
 
@@ -121,8 +114,8 @@ def test_two_states_are_found_from_both_sides(monkeypatch):
     assert [r.record.get(OTHER, {}).get("ridges_in_contact") for r in results] == [None, 3, 3, None]
     assert results[2].record[OTHER]["reached"] == "full slip from voltage 50 V"
     caution = "there are two states of full slip: f_T 1.25 N/m with 5 ridges (full slip from voltage 70 V) and f_T 0.75"
-    assert results[2].cautions[-1].startswith(caution)
-    assert not any("two states" in text for r in (results[0], results[3]) for text in r.cautions)
+    assert str(results[2].cautions[-1]).startswith(caution)
+    assert not any("two states" in text.text for r in (results[0], results[3]) for text in r.cautions)
     assert results[1].record["reached"] == "full slip from voltage 100 V"
 
 
@@ -157,10 +150,12 @@ def test_point_has_the_values_and_errors_of_the_scenes_mesh(monkeypatch):
     cost = result.cost
     assert (cost.unknowns, cost.factorisations, cost.newton_iterations) == (100, 5, 9)
     assert result.record["accuracy"]["mesh"] == MeshSize().model_dump() and "path_mesh" in result.record
-    assert any("0.99 N/m with 4 ridges on the scene's mesh, and 1.25 N/m with 5" in text for text in result.cautions)
+    assert any(
+        "0.99 N/m with 4 ridges on the scene's mesh, and 1.25 N/m with 5" in text.text for text in result.cautions
+    )
     monkeypatch.setattr(Chain, "_final", lambda self, model, state: sharp(state))
     (result,), _ = followed(monkeypatch, Skin(), [100.0])
-    assert not any("mesh" in text for text in result.cautions)
+    assert not any("mesh" in text.text for text in result.cautions)
 
 
 def test_second_state_is_one_of_the_scenes_mesh(monkeypatch):
@@ -178,7 +173,9 @@ def test_second_state_is_one_of_the_scenes_mesh(monkeypatch):
     results, written = followed(monkeypatch, Skin(), [100.0, 70.0, 65.0, 50.0])
     assert written == [0, 1, 2, 3, 1], "from 65 V, the one that was not found there goes on"
     assert results[1].record[OTHER]["f_t"] == 0.375
-    assert "f_T 0.625 N/m with 5 ridges (full slip from voltage 100 V) and f_T 0.375 N/m" in results[1].cautions[-1]
+    assert "f_T 0.625 N/m with 5 ridges (full slip from voltage 100 V) and f_T 0.375 N/m" in str(
+        results[1].cautions[-1]
+    )
 
 
 def test_point_not_found_on_the_scenes_mesh_is_a_run(monkeypatch):
@@ -291,7 +288,6 @@ def test_chain_that_was_stopped_goes_on(tmp_path, monkeypatch):
     ("changes", "message"),
     [
         ({"accuracy": {"mu_app": 0.01}}, "accuracy is given"),
-        ({"force": 0.1}, "force is 0.1"),
         ({"history": [{"name": "press", "f_ext": 1.0}]}, "history is given"),
         (
             {"materials": {"dermis": {"viscosity": {"preset": "fingerpad"}}}},
@@ -306,10 +302,3 @@ def test_chain_that_was_stopped_goes_on(tmp_path, monkeypatch):
 def test_other_scenes_are_refused(changes, message, tmp_path):
     with pytest.raises(SceneError, match=message):
         fp.sweep(fp.Scene(**changes), tmp_path, states="full_slip", **{"roughness.h_rms": [2e-6]})
-
-
-def test_unknown_states_and_models_without_them_are_refused(tmp_path):
-    with pytest.raises(SceneError, match="states is 'some'; it must be 'all' or 'full_slip'"):
-        fp.sweep(out=tmp_path, states="some", voltage=[0])
-    with pytest.raises(SceneError, match="full slip alone is of the model 'full'"):
-        fp.sweep(out=tmp_path, states="full_slip", model="cylinders", voltage=[0])

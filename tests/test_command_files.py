@@ -6,15 +6,11 @@ from importlib.resources import files
 from pathlib import Path
 
 import pytest
-from mpi4py import MPI
 
 from fingerpad.cli import main
 from fingerpad.cli.arguments import PICTURE, Kind, Parser
-from fingerpad.model.finger import meshed
-from fingerpad.model.options import FingerModel, by_rule, memory, plan, unknowns
-from fingerpad.scene import Scene, load
+from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError
-from fingerpad.scene.reading import override
 from tests.commands import COARSE, refused
 
 OUTPUTS = (
@@ -22,12 +18,9 @@ OUTPUTS = (
     ("check", "--mesh", "a mesh; its name must end with .msh"),
     ("estimate", "--csv", "a table; its name must end with .csv"),
     ("estimate", "--plot", "a picture; its name must end with one of .png"),
-    ("microscale", "--csv", "a table; its name must end with .csv"),
-    ("compare-data", "--csv", "a table; its name must end with .csv"),
-    ("compare-data", "--out", "a picture; its name must end with one of .png"),
-    ("topography", "--plot", "a picture; its name must end with one of .png"),
+    ("compare", "--csv", "a table; its name must end with .csv"),
 )
-GIVEN = {"report": ["--calculator"], "compare-data": ["none.csv", "--run", "none"], "topography": ["none.csv"]}
+GIVEN = {"report": ["--calculator"], "compare": ["none.csv", "--run", "none"], "topography": ["none.csv"]}
 
 
 @pytest.mark.parametrize(("command", "option", "words"), OUTPUTS)
@@ -101,63 +94,10 @@ def test_check(tmp_path, capsys):
     assert (tmp_path / "mesh.png").stat().st_size > 10_000
 
 
-@pytest.mark.slow
-def test_loads_that_were_never_tried_are_named(tmp_path, capsys):
-    """There is no promise for them."""
-    argv = ["check", "--out", str(tmp_path), *(word for text in COARSE for word in ("--set", text))]
-    assert main([*argv, "--set", "voltage=5000"]) == 0
-    text = capsys.readouterr().out
-    assert "can be run" not in text
-    told, tried = text.split("charge has 75 N/m and 5000 V, and tried were ")
-    assert told.endswith("whether its loads can be reached is not known: ")
-    assert tried.startswith("force 0.05 to 1.2 N, f_ext 5 to 150 N/m, voltage 0 to 200 V, ")
-    assert main(argv) == 0
-    assert capsys.readouterr().out.endswith("The scene can be run.\n")
-
-
-def test_mesh_is_counted(tmp_path, capsys):
-    """Its triangles and unknowns are those of the run, and the memory follows from them."""
-    argv = ["check", "--out", str(tmp_path), *(word for text in COARSE for word in ("--set", text))]
-    assert main(argv) == 0
-    triangles, number, gigabytes = re.search(
-        r"(\d+) triangles of element P2, (\d+) unknowns\n.*\n  about ([\d.]+) GB", capsys.readouterr().out
-    ).groups()
-    scene = load(None, dict(map(override, COARSE)))
-    mesh = meshed(FingerModel(by_rule(scene), plan(scene)), MPI.COMM_SELF).mesh
-    points, made = (mesh.topology.index_map(d).size_global for d in (0, 2))
-    assert int(triangles) == made and int(number) == unknowns(points, made, "P2")
-    assert float(gigabytes) == pytest.approx(memory(int(number)) / 1e9, rel=0.02)
-
-
-@pytest.mark.parametrize("errors", [True, False])
-def test_two_meshes_are_named_where_there_are_two(capsys, tmp_path, errors):
-    """Facets of a sixteenth of 30 µm where contact ends."""
-    words = [*COARSE, f"output.errors={str(errors).lower()}"]
-    assert main(["check", "--out", str(tmp_path), *(word for text in words for word in ("--set", text))]) == 0
-    said = "with 1.88 µm where their contact ends; the path on elements 2 times as large"
-    assert (said in capsys.readouterr().out) == errors
-
-
 def test_mesh_beyond_the_memory_is_refused(capsys):
     """It is meshed, and passes the bound; the refusal has the number of its unknowns."""
     words = [word for text in (*COARSE, "numerics.memory=0.35e9") for word in ("--set", text)]
     assert "the mesh has " in refused(capsys, "check", *words)
-
-
-def test_mesher_that_fails_is_refused_in_a_sentence(monkeypatch, capsys):
-    """With what gmsh says; an error of the program stays one."""
-    pytest.importorskip("gmsh")
-
-    def fail(*given):
-        raise Exception("no closed loop")  # noqa: TRY002  # as gmsh's are
-
-    monkeypatch.setattr("geometry.fingertip.build", fail)
-    assert "the finger cannot be meshed: gmsh cannot mesh the body: no closed loop; try smaller" in refused(
-        capsys, "check", "--mesh", "x.msh"
-    )
-    monkeypatch.setattr("geometry.fingertip.build", lambda *given: 1 / 0)
-    with pytest.raises(ZeroDivisionError):
-        main(["check", "--mesh", "x.msh"])
 
 
 def test_mesh_is_read_again_with_its_names(tmp_path, capsys):

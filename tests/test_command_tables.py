@@ -11,7 +11,6 @@ from fingerpad.runs.sweep import sweep as run_sweep
 from fingerpad.scene import Scene, from_data, keys, load
 from tests.commands import ROOT, refused
 from tests.measures import rows_of
-from variational.roughness.bam import BearingArea
 
 
 # -- estimate ----------------------------------------------------------------------------------------------
@@ -69,39 +68,20 @@ def test_picture_of_two_keys_is_a_map(monkeypatch):
     assert across == pytest.approx([2e-6, root], rel=0.01)
 
 
-def test_estimate_without_an_answer_is_refused(capsys):
-    """5 kV are beyond any contact; where some points have an answer, the others have the reason in the table."""
-    assert "no contact pressure" in refused(capsys, "estimate", "--voltage", "5000")
-    assert main(["estimate", "--voltage", "100,5000"]) == 0
-    assert "no contact pressure" in capsys.readouterr().out
-
-
 @pytest.mark.parametrize(
     ("line", "words"),
     [
         ("estimate --f-ext=-5,20", "f_ext is -5 N/m"),
-        ("estimate --set geometry.width=19e-3", "geometry is not that of the default"),
         ("estimate --csv nowhere/mu.csv", "its folder is not there"),
         ("estimate demos/scenes/unload.toml", "history is given; the model 'cylinders' answers for press, charge and"),
-        ("microscale --p 0:1e5:3", "--p is 0:1e5:3; it must be greater than 0"),
         ("microscale demos/scenes/sine_while_sliding.toml", "name those wanted by --voltage"),
-        ("estimate --plot mu.txt", "mu.txt cannot be a picture; its name must end with one of .png"),
         ("params zebra", "no key of a scene has zebra in its name"),
         ("sweep --over model=full,cylinders", "model is varied and is no key of a scene; a sweep has one model"),
-        ("sweep --over out=1,2 --model cylinders", "out is varied and is no key of a scene"),
         ("estimate --f-ext 75 --set f_ext=50", "--set f_ext is given and --f-ext too; give one of"),
         ("estimate --over force --f-ext 75", "--force is given and --f-ext too"),
-        ("estimate --over voltage --over voltage=1,2", "--over voltage is given, and its values are given already"),
-        ("estimate --over voltage=", "--over is voltage=; write it as --over voltage or"),
         ("estimate --over geometry.ridge_count", "it must be a key of one number that may have a fraction"),
-        ("estimate --over zebra=1,2", "zebra is not a key of a scene"),
-        ("estimate --over out=1,2", "out is varied and is no key of a scene"),
-        ("solve --target scene=1", "target is 'scene=1'; scene is no quantity, such as mu_app"),
         ("estimate --over voltage --over friction --over force --plot a.png", "a picture is over one key or two"),
-        ("estimate --over voltage=0:200:101 --over friction=0.1:1:100", "the sweep has 10100 points; at most 10000"),
-        ("estimate --voltage 0:1e400:3", "--voltage is 0:1e400:3; each value must be a finite number"),
         ("estimate --voltage -200:200:3", "has an equals sign before it; write --voltage=-200:200:3"),
-        ("run --force '-0.5 N'", "has an equals sign before it; write --force='-0.5 N'"),
     ],
 )
 def test_bad_command_line(capsys, line, words):
@@ -109,10 +89,6 @@ def test_bad_command_line(capsys, line, words):
 
 
 # -- microscale --------------------------------------------------------------------------------------------
-def test_real_area_is_the_bearing_area():
-    """Half of the surface is above its mean, a sixth above one rms height (15.87 % of a Gaussian)."""
-    law = BearingArea(0.5e-6)
-    assert law.contact_area([0.0, law.h_rms]) == pytest.approx([0.5, 0.158655], rel=1e-5)
 
 
 def test_microscale_table_is_the_closure():
@@ -176,10 +152,7 @@ def test_study_of_a_file_and_of_options(tmp_path):
     ("argv", "message"),
     [
         ([], "nothing is varied; give a table [sweep]"),
-        (["--over", "voltage"], "--over voltage is no KEY=RANGE"),
-        (["--over", "voltage=0,5", "--over", "voltage=9"], "--over voltage is given twice"),
         (["--over", "voltage=0,-5500"], "voltage is -5500 V; it must be"),
-        (["--over", "volts=0,5"], "volts is not a key of a scene; did you mean voltage?"),
         (["--over", "voltage=0,5", "--set", "voltage=5"], "--set voltage is given and voltage is varied"),
         (["--over", "voltage=5,5"], "voltage of the sweep is [5, 5]; each value must be there once"),
     ],
@@ -187,17 +160,6 @@ def test_study_of_a_file_and_of_options(tmp_path):
 def test_sweep_refuses(argv, message, capsys, tmp_path):
     assert refused(capsys, "sweep", *argv, "--out", str(tmp_path / "new")).startswith(message)
     assert not list(tmp_path.iterdir())
-
-
-def test_files_of_a_study_are_beside_it(tmp_path):
-    text = """[sweep]
-    "geometry.file" = ["a.msh", "sub/b.msh"]
-    roughness.topography.file = ["map.npy"]
-    """
-    (tmp_path / "study.toml").write_text(text, encoding="utf-8")
-    _, axes = sweep.study(tmp_path / "study.toml", [], [])
-    assert axes["geometry.file"] == [str(tmp_path / "a.msh"), str(tmp_path / "sub" / "b.msh")]
-    assert axes["roughness.topography.file"] == [str(tmp_path / "map.npy")]
 
 
 def test_sweep_and_run_have_folders_of_their_own(tmp_path, capsys):
@@ -211,14 +173,6 @@ def test_sweep_and_run_have_folders_of_their_own(tmp_path, capsys):
         capsys, "sweep", "--model=cylinders", over, f"--out={run}"
     )
     assert "holds the results of a sweep" in refused(capsys, "run", "--model=cylinders", f"--out={study}")
-
-
-# -- models side by side -----------------------------------------------------------------------------------
-def test_compare_says_why_a_model_has_no_values(capsys):
-    """In one sentence below a column of dashes."""
-    assert main(["compare", str(ROOT / "demos" / "scenes" / "small_finger.toml"), "--model", "cylinders"]) == 1
-    out = capsys.readouterr().out
-    assert "cylinders: no values, since geometry is not that of the default finger" in out
 
 
 def test_sweep_over_keys_that_need_each_other_and_whole_numbers(tmp_path):

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from fingerpad.cli import main
+from fingerpad.model.cautions import examine
 from fingerpad.scene import from_data, load
 from fingerpad.scene.messages import SceneError
-from fingerpad.scene.remarks import remarks
 from tests.commands import refused
 from variational.roughness.spectrum import SelfAffine
 
@@ -21,8 +21,6 @@ def table_of(text: str) -> dict[str, float]:
     [
         ("1 2 3 4\n" * 4, ["--size", "1 um", "1 um"], "holds numbers without a unit; give --unit"),
         ("1 2 3 4\n" * 4, ["--unit", "um"], "has no size; give --size or --pixel"),
-        ("1 2 nan nan\n" * 4, ["--unit", "um", "--size", "1 um", "1 um"], "8 of 16 heights are missing or infinite"),
-        ("1 0 0 0\n" * 4, ["--unit", "um", "--pixel", "1 um", "4 V"], "--pixel[1] is '4 V'; its unit is not a unit of"),
     ],
 )
 def test_topography_refuses(text, options, message, tmp_path, capsys):
@@ -64,22 +62,6 @@ def test_scene_may_name_a_height_map(tmp_path, capsys):
     assert again == scene and scene.replace(voltage=100.0).roughness == scene.roughness
 
 
-@pytest.mark.parametrize(
-    ("table", "message"),
-    [
-        ({"file": "none.csv", "unit": "um"}, "roughness.topography.file is 'none.csv': No such file"),
-        ({"file": "none.csv", "size": [1, 1]}, "roughness.topography.size[0] is 1 m; it must be from 1e-10 to 0.1 m"),
-        ({"fil": "none.csv"}, "roughness.topography.file is missing"),
-    ],
-)
-def test_bad_height_map_of_a_scene(table, message):
-    with pytest.raises(SceneError) as refusal:
-        from_data({"roughness": {"topography": table}})
-    assert str(refusal.value).startswith(message)
-    with pytest.raises(SceneError, match="roughness.h_rms is 3e-06 and roughness.topography is given too"):
-        from_data({"roughness": {"h_rms": 3e-6, "topography": {"file": "skin.csv", "unit": "um"}}})
-
-
 # -- maps that do not show the roughness -------------------------------------------------------------------
 def printed(tmp_path, capsys, heights, size) -> str:
     np.save(tmp_path / "map.npy", heights)
@@ -112,4 +94,4 @@ def test_map_smaller_than_the_longest_waves_is_told(tmp_path, capsys, width, tol
     assert (words in printed(tmp_path, capsys, heights, (width, width))) == told
     topography = {"file": str(tmp_path / "map.npy"), "unit": "m", "size": [width, width]}
     scene = from_data({"roughness": {"topography": topography}})
-    assert any("roughness ends at waves" in text for text in remarks(scene)) == told
+    assert any("roughness ends at waves" in text for text in map(str, examine("scene", scene))) == told

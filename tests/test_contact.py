@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from dolfinx import fem
 from mpi4py import MPI
 from scipy.optimize import brentq
 
@@ -195,24 +194,3 @@ def test_full_slip_is_one_way(body, pull, found):
     state = observer.state()
     p_n = np.full_like(state.x, 1e4)
     assert observer.slip(replace(state, p_n=p_n, t_t=MU_F * p_n * pull(state.x))) == found
-
-
-# -- the solver's settings -----------------------------------------------------------------------------
-
-
-# -- what a solve leaves -------------------------------------------------------------------------------
-def test_imbalance_is_the_largest_free_force(body, pressed):
-    """The figure reported is that of the residual assembled anew, over the free unknowns, per force scale."""
-    problem, layout = pressed.problem, pressed.layout
-    f = layout.create_vector()
-    f.set(0.0)
-    layout.add_to_unknowns(fem.assemble_vector(problem.residual).array.copy(), f)
-    if layout.owns_rigid:
-        f.array_w[-1] += 5.0
-        f.array_w[-2] = 0.0  # the bone's x is prescribed, and so are the sides'
-    sides = fem.locate_dofs_topological(problem.V, 1, body.facet_tags.find(tags.SIDES))
-    rows = layout.rows[2 * sides] - f.getOwnershipRange()[0]
-    f.array_w[rows[(rows >= 0) & (rows < layout.local_size)]] = 0.0
-    largest = max(problem.mesh.comm.allgather(float(np.abs(f.array_r).max(initial=0.0))))
-    assert pressed.imbalance() == pytest.approx(largest, rel=1e-6, abs=0)
-    assert 0 < pressed.imbalance() < TOLERANCE

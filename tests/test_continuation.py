@@ -78,16 +78,6 @@ def test_finger_that_was_lifted_comes_down_at_once(voltage):
         assert down[-1].contact_length == pytest.approx(first.contact_length, rel=1e-3)
 
 
-def test_skin_from_above_is_pressed_in_before_force_takes_over():
-    """By the depth of the first touch, not by roundoff, which is all that a flat block just on the screen bears."""
-    run = over(load(MPI.COMM_WORLD, block(WIDTH, HEIGHT, 0.25e-3)), MU_F, 1e11, 1e10, held=False).continuation
-    run.run(Target("lift", bone_height=30e-6))
-    heights = []
-    run.on_accept = lambda target, part, attempt: heights.append((target.name, run.solver.bone[1]))
-    run.run(Target("press", f_ext=1.0))
-    assert [y for name, y in heights if name == "touch"] == [pytest.approx(-run.touch_depth)]
-
-
 def test_load_of_ever_smaller_steps_is_given_up(sliding, monkeypatch):
     """Steps that stay small do not go on for ever: the message says how many there were, and where they led."""
     monkeypatch.setattr(continuation, "_MAX_STEPS_PER_LARGEST", 0)
@@ -104,10 +94,3 @@ def test_steps_grow_again_after_a_cut(sliding, each):
     same = 1 if each == 0 else 4
     assert sizes[:3] == pytest.approx([60, 60, 30])
     assert sizes[2 : 3 + same] == pytest.approx([30] * same + [60])
-
-
-def test_no_load_is_given_up_before_a_jump_was_tried(sliding, monkeypatch):
-    """The smallest step is as large as the first that is cut, but the third attempt is still made, and jumps."""
-    monkeypatch.setattr(continuation, "_SMALLEST", 0.9)
-    reached = sliding(0.235e-3, 0.245e-3, but_pseudo_transient=True)
-    assert reached[-1][0] == pytest.approx(0.6e-3)

@@ -10,12 +10,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from mpi4py import MPI
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from fingerpad.runs import full
-from fingerpad.runs.context import RunContext
-from fingerpad.scene import Scene
 from geometry import tags
 from geometry.bodies import ridge
 from geometry.mesh import load
@@ -32,7 +28,6 @@ from variational.solvers.outcome import NotConverged, Timings
 
 H_0, EPS_0, FOLD_VOLTAGE = 0.514e-6, 8.854e-12, 200.0
 CENTRE = 2e-6  # m
-Array = NDArray[np.float64]
 
 
 class Stub:
@@ -181,19 +176,6 @@ def test_ridge_that_lets_go_is_given_the_free_air_gap(also_free):
     assert ("pseudo-transient" in stub.stops) == also_free
 
 
-@pytest.mark.parametrize("beyond", [1.0, 10.0, 100.0])  # Pa
-def test_past_the_pull_off_fold(beyond):
-    """A little beyond the fold nothing holds the ridge: it goes to the closure's far end within the cap."""
-    closure = BearingArea(H_0)
-    fold = closure.pull_off_fold(FOLD_VOLTAGE)
-    stub = flat(float(closure.external_pressure(fold, FOLD_VOLTAGE)) - beyond)
-    stub.coupling.closure = closure
-    stub.coupling.set_air_gaps(closure.air_gap(np.array([0.95 * fold])))
-    stub.coupling.solve()
-    assert stub.coupling.history.jumped == {0}
-    assert stub.coupling.d_eq[0] == closure(0.0).d_eq
-
-
 # -- the length of Eq. 4 -----------------------------------------------------------------------------------
 @pytest.mark.parametrize("by_gap", [False, True])
 def test_mean_pressure_is_over_the_length_chosen(by_gap):
@@ -213,11 +195,3 @@ def test_mean_pressure_is_over_the_length_chosen(by_gap):
     sides = [np.interp(level, y[x * side > 0][::side], np.abs(x[x * side > 0])[::side]) for side in (1, -1)]
     force = made.observer.ridge_loads(surface).f_contact[0]
     assert d_eq == pytest.approx(float(closure(force / sum(sides)).d_eq), rel=0.01)
-
-
-def finger(scene: Scene) -> tuple[Array, Array]:
-    """Return pressures over the length under pressure (Pa) and air gaps (m) of a charged finger's ridges in contact."""
-    loads = [{"name": "press", "f_ext": 1.0}, {"name": "charge", "voltage": 100.0}]
-    made = full.run(scene.replace(history=loads), RunContext(comm=MPI.COMM_SELF))
-    touching = made.charged.p_c > 0
-    return made.charged.p_c[touching], made.charged.d_eq[touching]

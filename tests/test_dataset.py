@@ -103,15 +103,6 @@ def test_dataset_of_a_result_that_was_read_back(folder):
     assert bytes(again.to_netcdf(engine="scipy", format="NETCDF3_64BIT")) == (folder / "result.nc").read_bytes()
 
 
-def test_skin_that_was_read_back_is_that_of_the_run(folder, data):
-    """Without what fills up the rows of a state on fewer facets."""
-    for name, state in Result.load(folder).named.items():
-        known = data["skin_ridge"].sel(state=name).notnull().values
-        assert state.skin.x.shape == state.skin.p_el.shape == (known.sum(), 4)
-        assert state.skin.ridge.dtype.kind == "i"
-        np.testing.assert_array_equal(state.skin.p_n, data["skin_p_n"].sel(state=name).values[known])
-
-
 def test_dataset_that_is_not_whole_is_refused(folder, tmp_path):
     (tmp_path / "result.nc").write_bytes((folder / "result.nc").read_bytes()[:-5000])
     with pytest.raises(fp.SceneError, match="cannot be read: result.nc is not whole, or not of a run"):

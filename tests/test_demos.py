@@ -74,13 +74,6 @@ def test_every_demo_is_listed():
     assert sorted(listed) == [demo.name for demo in DEMOS]
 
 
-def test_sweep_by_dask_without_dask(tmp_path):
-    """Refused in a sentence; with it the demo was run by hand."""
-    (tmp_path / "dask.py").write_text("raise ImportError", encoding="utf-8")
-    done = python(str(ROOT / "demos" / "clusters" / "dask_sweep.py"), cwd=tmp_path, PYTHONPATH=f"{tmp_path}:{ROOT}")
-    assert done.returncode == 1 and done.stderr.startswith("dask is not installed; environment/add distributed, or")
-
-
 # -- measurements of docs/performance.md, and the sweep as an array of jobs ------------------------------------------
 SMALL = ROOT / "demos" / "scenes" / "small_finger.toml"
 

@@ -7,8 +7,8 @@ import pytest
 from dolfinx.mesh import entities_to_geometry
 from mpi4py import MPI
 
-from fingerpad.accuracy.solves import solve_again
-from fingerpad.accuracy.states import StateRecorder, contact_ends, edge_places
+from fingerpad.accuracy.solves import StateRecorder, solve_again
+from fingerpad.accuracy.states import contact_ends, edge_places
 from fingerpad.model.finger import meshed
 from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.scene import from_data

@@ -14,13 +14,11 @@ from scipy.optimize import brentq
 from geometry import tags
 from geometry.bodies import block, ridge
 from geometry.mesh import load
-from variational import kinematics
 from variational.contact.interface import Interface
 from variational.contact.penalty import Penalty
 from variational.element import ELEMENTS
 from variational.materials.ogden import Ogden
 from variational.materials.saint_venant import SaintVenant
-from variational.output import Cellwise
 from variational.problem import Problem
 from variational.resultants import Observer
 from variational.solvers.equations import Control, Equations
@@ -147,22 +145,6 @@ def test_residual_is_the_energys_derivative():
     np.testing.assert_allclose(np.log2(np.divide(remainders[:-1], remainders[1:])), 2, atol=0.1)
 
 
-@pytest.mark.mpi
-def test_mixed_jacobian_is_symmetric():
-    """Displacement and pressure derive from one energy. Tolerance: roundoff."""
-    solver = layered("P2-P1", eps_n=0.0)
-    move, A = disturb(solver), solver.iteration.tangent.matrix
-    blocks = [solver.problem.jacobian, *solver.problem.pressure_jacobian]
-    for form, part in zip(blocks, ((0, 0), (0, 1), (1, 0), (1, 1)), strict=True):
-        solver.layout.add_to_matrix(A, form, part)
-    A.assemble()
-    x, forth, back = (solver.layout.create_vector() for _ in range(3))
-    x.array_w[:] = move
-    A.mult(x, forth)
-    A.multTranspose(x, back)
-    np.testing.assert_allclose(back.array_r, forth.array_r, rtol=0, atol=1e-13 * forth.norm(3))
-
-
 # -- homogeneous states --------------------------------------------------------------------------------
 def confined_stress(solid, stretch: float) -> float:
     """Return dW/dlambda_2 (Pa) at stretches (1, stretch, 1)."""
@@ -202,29 +184,6 @@ def test_patch_of_layers(pressed):
     Tolerance: that of the solve, 1e-9 N/m at the nodes of facets of 0.1 mm, is 1e-9 of 10 kPa; ten times that.
     """
     np.testing.assert_allclose(Observer(pressed.problem).state().p_n, 10e3, rtol=1e-8)
-
-
-@pytest.mark.mpi
-def test_stress_of_layers(pressed):
-    """The sampled stress is each layer's own confined compression; the nail has no pressure to go wrong.
-
-    Tolerance: the solve's 1e-9, times the hard layer's bulk over its shear modulus, 5000, as what is sampled there is
-    a small difference of strains.
-    """
-    problem, by = pressed.problem, stretches(10e3)
-    F = kinematics.deformation_gradient(ufl.grad(problem.u))
-    sampled = {group: kinematics.cauchy(law, F, problem.pressures[group]) for group, law in problem.laws.items()}
-    found = Cellwise(problem.mesh, problem.cell_tags, sampled, np.array([[0.2, 0.3]])).evaluate()[:, 0]
-    np.testing.assert_allclose(found[:, 4], -10e3, rtol=1e-6)
-    for tag in (SOFT, HARD):
-        cells = problem.cell_tags.find(tag)
-        cells = cells[cells < len(found)]
-        # Lateral stress: sigma_yy is -p, sigma_xx = sigma_zz, and the trace is three times the pressure.
-        solid, J = LAYERS[tag], by[tag]
-        bulk = 2 * solid.shear_modulus * (1 + solid.poisson) / (3 * (1 - 2 * solid.poisson))
-        lateral = (3 * bulk * (J - 1) + 10e3) / 2
-        for component in (0, 8):
-            np.testing.assert_allclose(found[cells, component], lateral, rtol=1e-6)
 
 
 # -- a layered ridge -----------------------------------------------------------------------------------

@@ -235,21 +235,3 @@ def interrupted(code: str, *words: object, moment: str = "", handler: str = "def
 def test_ctrl_c_ends_the_program_quietly(door, moment):
     done = interrupted(DOORS[door], "params", "f_ext", moment=moment)
     assert (done.returncode, done.stderr) == (130, "")
-
-
-def test_ctrl_c_while_finite_elements_are_imported(tmp_path):
-    """The run has not begun then."""
-    done = interrupted(DOORS["module"], "run", "--out", tmp_path / "new", moment="dolfinx")
-    assert (done.returncode, done.stdout, done.stderr) == (130, "", "")
-    assert not (tmp_path / "new").exists()
-
-
-def test_ctrl_c_that_is_ignored_stays_ignored():
-    done = interrupted(DOORS["module"], "params", "f_ext", moment="numpy", handler="SIG_IGN")
-    assert (done.returncode, done.stderr) == (0, "") and "f_ext" in done.stdout
-
-
-def test_library_leaves_signals_alone():
-    code = "import fingerpad, fingerpad.__main__, fingerpad.cli.run\n"
-    code += "assert signal.getsignal(signal.SIGINT) is signal.default_int_handler"
-    assert interrupted(code).returncode == 0

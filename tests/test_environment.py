@@ -74,23 +74,7 @@ def enter(checkout: Path, *command: str, cwd: Path | None = None, **variables: s
     return subprocess.run(line, cwd=where, env=variables, capture_output=True, text=True)
 
 
-def told(checkout: Path) -> list[str]:
-    return (checkout.parent / "told").read_text().splitlines()
-
-
-def bound(arguments: list[str], option: str = "--bind") -> set[str]:
-    """Return the folders that are what they are outside."""
-    return {a for name, a, b in zip(arguments, arguments[1:], arguments[2:], strict=False) if name == option and a == b}
-
-
 # -- where things are --------------------------------------------------------------------------------------
-def test_what_can_be_written_to_is_bound_and_the_rest_is_read_only(checkout):
-    assert enter(checkout, "true").returncode == 0
-    arguments = told(checkout)
-    assert {folder for folder in ("/tmp", "/run", "/var", "/dev/shm") if Path(folder).is_dir()} <= bound(arguments)
-    read_only = {b for a, b in zip(arguments, arguments[1:], strict=False) if a == "--remount-ro"}
-    assert read_only == {"/", "/dev"}
-    assert arguments.index("--remount-ro") > max(k for k, name in enumerate(arguments) if name == "--bind")
 
 
 @pytest.mark.parametrize(
@@ -107,17 +91,6 @@ def test_what_bubblewrap_refuses(checkout, refusal, words):
     assert done.returncode == 1
     assert done.stderr.startswith("fingerpad: ") and words in done.stderr
     assert done.stderr.count("\n") == 1
-
-
-@pytest.mark.parametrize(
-    ("before", "words"),
-    [("mkdir x && cd x && rmdir ../x", "the current folder is gone"), ("ulimit -n 16", "16 open files, and a")],
-)
-def test_where_no_command_can_run(checkout, tmp_path, before, words):
-    """Bubblewrap would end with a message of its own, and what it had started would stay."""
-    line = ["bash", "-c", f'{before} && exec "{checkout}/environment/run" true']
-    done = subprocess.run(line, env=environment(checkout), capture_output=True, text=True, cwd=tmp_path)
-    assert done.returncode == 1 and words in done.stderr
 
 
 # -- signals -----------------------------------------------------------------------------------------------

@@ -8,13 +8,11 @@ import gmsh
 import numpy as np
 import pytest
 
-import geometry
 from fingerpad.measurements.table import read as measurements
 from fingerpad.scene import SceneError, from_data, load
 from geometry.meshfile import file as mesh
 from geometry.profiles import GeometryError
 from geometry.shape import session
-from tests.commands import python
 from tests.test_meshfile import write
 from variational import files
 from variational.roughness.heightfile import scan
@@ -77,23 +75,6 @@ def test_large_files_are_refused_unread(door):
     assert "it has 20000 MB, and at most" in sentence(path)
 
 
-def test_files_that_cannot_be_opened(door):
-    sentence, path = door
-    path.mkdir()
-    assert "Is a directory" in sentence(path)
-    assert "\n" not in sentence(path.with_name("gone") / path.name)
-
-
-def test_file_is_read_whole_up_to_its_limit(tmp_path):
-    path = tmp_path / "a"
-    path.write_bytes(b"12345")
-    assert files.read(path, 5) == b"12345"
-    with pytest.raises(OSError, match="it has 5e-06 MB, and at most 4e-06 MB are read"):
-        files.read(path, 4)
-    with pytest.raises(OSError, match="embedded null"):
-        files.read("a\0b")
-
-
 def test_copy_is_alone_and_goes(tmp_path):
     """Its folder is the user's, and the one that is worked in; afterwards all is as before."""
     before = Path.cwd()
@@ -117,21 +98,6 @@ def test_neighbours_of_a_mesh_are_not_run(tmp_path, monkeypatch, name):
         if name == "mine.msh.opt":
             gmsh.merge(str(path))
             assert (tmp_path / "run").exists()
-
-
-@pytest.mark.parametrize(("name", "variable"), [(".gmsh-options", "HOME"), (".gmshrc", "GMSH_HOME")])
-def test_options_of_gmsh_in_the_home_have_no_effect(tmp_path, monkeypatch, name, variable):
-    """As its window saves them; the control shows that gmsh reads them."""
-    (tmp_path / name).write_text("Mesh.MeshSizeFactor = 2;\n", encoding="utf-8")
-    code = "import gmsh, geometry; from geometry.shape import session\n"
-    code += "gmsh.initialize(); print(gmsh.option.getNumber('Mesh.MeshSizeFactor')); gmsh.finalize()\n"
-    code += "with session('a'): geometry.ridge(size=40e-6)(); print(len(gmsh.model.mesh.getNodes()[0]))"
-    monkeypatch.delenv("GMSH_HOME", raising=False)
-    done = python("-c", code, **{variable: str(tmp_path)})
-    with session("here"):
-        geometry.ridge(size=40e-6)()
-        expected = len(gmsh.model.mesh.getNodes()[0])
-    assert done.stdout.split() == ["2.0", str(expected)]
 
 
 @pytest.mark.parametrize("code", ["import os, signal; os.kill(os.getpid(), signal.SIGSEGV)", "while True: pass"])

@@ -1,4 +1,4 @@
-"""Named states on the final mesh: their errors from two meshes, and when the path is followed on finer elements."""
+"""Named states on the final mesh: their errors from two meshes, finer paths, and where ridges adhere."""
 
 import signal
 from pathlib import Path
@@ -7,14 +7,18 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
+import fingerpad as fp
+from fingerpad.accuracy import refinement as refining
 from fingerpad.accuracy import solves
 from fingerpad.accuracy.richardson import SITES, TWO, of_two_meshes, value
+from fingerpad.accuracy.solves import StateSolver
 from fingerpad.model.options import FingerModel, by_rule, plan
+from fingerpad.model.simulation import Simulation
 from fingerpad.results.interrupt import Interrupted
 from fingerpad.runs import restarts
-from fingerpad.scene import from_data
+from fingerpad.scene import from_data, load
 from tests.runs import run
-from tests.small_finger import NINE
+from tests.small_finger import NINE, SMALL
 from tests.test_accuracy import change, known, model_of, mu_app, refinement, search
 from variational.solvers.continuation import StepFailed
 from variational.solvers.outcome import NotConverged
@@ -44,7 +48,7 @@ def test_estimate_is_of_the_path_and_the_final_mesh(monkeypatch):
 @pytest.mark.parametrize(("receptor", "estimated"), [(5e-6, True), (20e-6, False)])
 def test_energy_densities_on_large_elements_have_no_error(monkeypatch, receptor, estimated):
     """On elements larger than the tips at the sites, of a radius of 6 µm, two meshes do not show it."""
-    monkeypatch.setattr(solves, "solve_again", lambda model, states, comm, *more: known(model, states, comm))
+    monkeypatch.setattr(refining, "solve_again", lambda model, states, comm, *more: known(model, states, comm))
     model = model_of({"mesh": {"receptor": receptor}})
     found = refinement(model, known(model, {}, MPI.COMM_SELF))
     found.run()
@@ -99,7 +103,7 @@ def test_path_is_followed_on_the_final_mesh_where_other_ridges_touch_there(monke
         change(solve, ridges_in_contact=16 if model.mesh.contact < 20e-6 else 17)
         return solve
 
-    monkeypatch.setattr(solves, "solve_again", other)
+    monkeypatch.setattr(refining, "solve_again", other)
     model = model_of({"numerics": {"memory": 1e15}})
     restart = refinement(model, known(model, {}, None)).run()
     words = "found no equilibrium" if lost_there else "16 ridges touch at full slip on the final mesh"
@@ -140,7 +144,7 @@ def test_starts_again_finer_where_the_path_is_lost(asked, start, helps, finer):
 
 
 # -- a small finger ----------------------------------------------------------------------------------------
-SMALL = NINE | {"f_ext": 1.0, "voltage": 100.0}
+PRESSED = NINE | {"f_ext": 1.0, "voltage": 100.0}
 
 
 def test_small_finger_tells_what_its_penalty_changes(tmp_path: Path):
@@ -148,8 +152,8 @@ def test_small_finger_tells_what_its_penalty_changes(tmp_path: Path):
 
     Facets of 7 um: where a ridge's contact is two or three facets long, springs move its edge by one or by none.
     """
-    mesh = SMALL["mesh"] | {"contact": 7e-6}
-    summary = run(from_data(SMALL | {"f_ext": 3.0, "mesh": mesh}), tmp_path, MPI.COMM_WORLD)
+    mesh = PRESSED["mesh"] | {"contact": 7e-6}
+    summary = run(from_data(PRESSED | {"f_ext": 3.0, "mesh": mesh}), tmp_path, MPI.COMM_WORLD)
     quantities = summary["accuracy"]["quantities"]
     assert "full_slip_sed_0" not in quantities, "elements at the sites are above 5 µm"
     for name in ("full_slip_f_t", "full_slip_mu_app"):
@@ -164,3 +168,53 @@ def test_small_finger_tells_what_its_penalty_changes(tmp_path: Path):
     path, final = summary["accuracy"]["solves"]
     assert final["mesh"]["contact"] == mesh["contact"] == path["mesh"]["contact"] / 2
     assert final["factorisations"] < path["factorisations"]
+
+
+# -- states solved for again where ridges adhere: what restarts, notes and cautions say of them ----------------------
+LAW = {"law": "BoundaryElements"}
+ADHERES = " without a load at 100 V: by the closure BoundaryElements ridges adhere without a load from 78.4 V on"
+
+
+def adhering(**keys):
+    """Return the small finger whose ridges adhere, at coarse elements."""
+    return load(SMALL).replace(mesh={"contact": 40e-6}, roughness=LAW, **keys)
+
+
+@pytest.mark.parametrize(("where", "method"), [(StateSolver, "_restored"), (Simulation, "run")])
+def test_restart_names_the_ridge_that_adheres(monkeypatch, where, method):
+    """Where a state is not found on the final mesh, and where the path is lost."""
+    found, once = getattr(where, method), ["full slip found no equilibrium"]
+
+    def failing(self, *args):
+        restart = found(self, *args)
+        if once and self.states[-1].voltage and (where is Simulation or args[1] == "full slip"):
+            raise StepFailed(once.pop())
+        return restart
+
+    monkeypatch.setattr(where, method, failing)
+    result = fp.run(adhering())
+    (restart,) = result.record["restarts"]
+    assert restart["reason"].startswith("full slip found no equilibrium; ridge ") and ADHERES in restart["reason"]
+    assert not result.failure
+
+
+def test_state_that_roundoff_may_choose_is_a_caution():
+    """The finger has three states of full slip on its final mesh, 1 % apart: changes of 1e-12 lead to each of them."""
+    words = "full slip, solved again with a contact size of 4e-05 m: skin jumped on the way, and roundoff"
+    (said,) = [text for text in map(str, fp.run(adhering()).cautions) if text.startswith(words)]
+    assert ADHERES in said
+    plain = fp.run(adhering().replace(roughness={"law": "BearingArea"}))
+    assert not [text for text in plain.cautions if "skin jumped" in text.text]
+
+
+def test_meshes_too_coarse_to_be_of_one_shape_are_noted(monkeypatch):
+    """The run keeps its path's states, without errors; it ended in a traceback."""
+
+    def refused(*_):
+        raise ValueError("a node lies 1.08 triangles outside the state's mesh; it is of another body")
+
+    monkeypatch.setattr(solves, "restore", refused)
+    output = {"receptors": False, "each_load": False}
+    result = fp.run(from_data(NINE | {"f_ext": 1.0, "voltage": 100.0, "output": output}))
+    assert result.full_slip.f_t > 0 and not result.failure
+    assert [text for text in result.notes if "could not be estimated" in text and "1.08 triangles" in text]

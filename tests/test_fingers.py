@@ -8,9 +8,7 @@ import fingerpad as fp
 from fingerpad.cli import main
 from fingerpad.reduced.default_finger import similar
 from fingerpad.scene import load
-from fingerpad.scene.changes import with_presets
 from fingerpad.scene.fingers import FINGERS
-from tests.commands import refused
 
 NAMES = [name for name in FINGERS if name != "adult"]
 
@@ -95,29 +93,12 @@ def test_record_of_a_run_changes_its_name(name, tmp_path):
     assert load(file, {"finger": "child"}) == fp.Scene(finger="child", f_ext=50.0)
 
 
-def test_mesh_of_a_file_keeps_its_shape():
-    """The name gives no lengths beside a mesh but the thickness that the attraction reads."""
-    data = with_presets({"finger": "child", "geometry": {"file": "finger.msh"}}, {})
-    assert data["geometry"] == {"file": "finger.msh", "sc_thickness": FINGERS["child"].values["geometry.sc_thickness"]}
-
-
 @pytest.mark.parametrize("bad", ["children", "Child", "", 3, None, ["dry"], {"dry": 1}, True])
 def test_other_names_are_refused(bad):
     with pytest.raises(fp.SceneError, match="^finger is .*; it must be 'adult', 'woman', .* 'dry' or 'moist'$"):
         fp.Scene(finger=bad)
     with pytest.raises(fp.SceneError, match="^finger is "):
         fp.Scene().replace(finger=bad)
-
-
-def test_commands_know_the_names(tmp_path, capsys):
-    """The reference has them, check has what they give and what is given otherwise."""
-    assert main(["params", "finger"]) == 0
-    assert '"adult", "woman", "child", "elderly", "callused", "dry", "moist"' in capsys.readouterr().out
-    changed = ["--set", "finger=dry", "--set", "friction=0.3", "--set", "mesh.contact=60e-6"]
-    assert main(["check", *changed, "--out", str(tmp_path)]) == 0
-    words = "finger dry, a dry finger: 3 keys by its name (docs/assumptions.md); otherwise: friction\n"
-    assert words in capsys.readouterr().out
-    assert "must be 'adult'" in refused(capsys, "check", "--set", "finger=old")
 
 
 @pytest.mark.parametrize("name", FINGERS)

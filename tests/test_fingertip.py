@@ -1,4 +1,4 @@
-"""The fingertip's mesh against its curves and plane geometry, and what is refused."""
+"""The fingertip's curves against Table 1, and its mesh against the curves."""
 
 from functools import partial
 
@@ -6,19 +6,92 @@ import numpy as np
 import pytest
 import ufl
 from mpi4py import MPI
+from numpy.testing import assert_allclose
 from scipy.spatial import cKDTree
 
 from fingerpad.scene import Scene
 from geometry import fingertip, sizing, tags
 from geometry.mesh import load
 from geometry.parameters import Fingertip
-from geometry.profiles import GeometryError
-from geometry.reflection import HalfMesh, swapped
+from geometry.profiles import GeometryError, Profiles
+from geometry.reflection import HalfMesh
 from tests.measures import integral, vertices
 from tests.small_finger import SMALL
-from tests.test_profiles import UM, WAVE, dense
+
+UM, MM = 1e-6, 1e-3
+WAVE = Fingertip().ridge_wavelength
+HALF_DEPTH = 50 * UM  # the mean of the skin lies that deep below the tips
 
 
+def dense(profiles, depth, count=400001):
+    """Return many points of one curve between the nail's edges; shape (count, 2)."""
+    s = np.linspace(-profiles.nail_arc, profiles.nail_arc, count)
+    return profiles.point(s, depth(s))
+
+
+def test_arc_length(profiles):
+    """Points one wavelength apart in s are so along the outline.
+
+    Tolerance: chords of a thousandth of it and the interpolation in a table of arc lengths leave 4e-9.
+    """
+    s = np.linspace(20 * WAVE, 21 * WAVE, 1001)
+    steps = np.linalg.norm(np.diff(profiles.point(s), axis=0), axis=1)
+    assert steps.sum() == pytest.approx(WAVE, rel=2e-8)
+
+
+@pytest.mark.parametrize("theta", [0.0, 0.3, np.pi / 2, 2.0, np.pi, -2.5])
+def test_depths(profiles, theta):
+    """The formulas of the three interfaces, below the outline's mean. Tolerance: roundoff."""
+    s = np.array(theta / (2 * np.pi) * WAVE)
+    ve_d = 450 + (225 if abs(theta) <= np.pi / 2 else 75) * (1 + np.cos(2 * theta))
+    assert profiles.skin(s) - HALF_DEPTH == pytest.approx(-50 * UM * np.cos(theta), abs=1e-17)
+    assert profiles.sc_ve(s) - HALF_DEPTH == pytest.approx((425 - 50 * np.cos(theta)) * UM, rel=1e-12, abs=0)
+    assert profiles.ve_d(s) - HALF_DEPTH == pytest.approx(ve_d * UM, rel=1e-12, abs=0)
+    assert profiles.d_sub(s) - HALF_DEPTH == pytest.approx(2000 * UM, rel=1e-12, abs=0)
+
+
+@pytest.mark.parametrize(
+    ("profile", "crests"),
+    [
+        ((1.0, -0.6), (-0.18159912, 0.18159912)),
+        ((-1.0,), (-0.5, 0.5)),
+        ((0.0, -1.0), (-0.25, 0.25)),
+        ((3.0, -0.5), (0,)),
+    ],
+)
+def test_lowest_point_is_on_the_screen_wherever_the_crest_is(profile, crests):
+    """Crests are where the profile's derivative vanishes; the lowest of them touches the screen, none is beyond.
+
+    cos t - 0.6 cos 2t has its maxima where cos t = 1 / 2.4. Tolerance: points 25 nm apart on a tip of some 100 um; the
+    table of arc lengths.
+    """
+    profiles = Profiles(Fingertip(ridge_profile=profile))
+    assert np.array(profiles.crests) == pytest.approx(np.array(crests) * WAVE, abs=1e-7 * WAVE)
+    skin = dense(profiles, profiles.skin)
+    assert skin[:, 1].min() == pytest.approx(0, abs=1e-10)
+    s = np.linspace(0, WAVE, 20001)
+    assert np.ptp(profiles.skin(s)) == pytest.approx(100 * UM, rel=1e-6)
+    assert profiles.skin(s).min() == pytest.approx(0, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("sites", "places", "deep", "above", "below"),
+    [("merkel_sites", [0.0], 880, "sc_ve", "ve_d"), ("meissner_sites", [-0.25, 0.25], 470, "ve_d", "d_sub")],
+)
+def test_sites_are_in_their_layers(profiles, sites, places, deep, above, below):
+    """Merkel: one a ridge, 20 um above the intermediate ridge's tip and below the SC.
+
+    Meissner: two a ridge, 20 um below the tops of the papillae and above the subcutis. Tolerance: roundoff of
+    centimetres.
+    """
+    s = ((np.array(profiles.ridges)[:, None] + places) * WAVE).ravel()
+    depth = np.full(55 * len(places), HALF_DEPTH + deep * UM)
+    assert_allclose(getattr(profiles, sites)(), profiles.point(s, depth), rtol=0, atol=1e-15)
+    assert (getattr(profiles, above)(s) < depth).all()
+    assert (depth < getattr(profiles, below)(s)).all()
+
+
+# -- the fingertip's mesh against its curves and plane geometry, and what is refused ---------------------------------
 def shoelace(*chains) -> float:
     """Return the area of the polygon through chains of points."""
     x, y = np.concatenate(chains).T
@@ -74,44 +147,6 @@ def test_ridges_of_the_mesh(finger_mesh, profiles):
         assert away_from(nodes, ends) < 1e-15
 
 
-def test_contact_size(finger_mesh):
-    """Facets about the tips that can touch are about as long as asked; those in the grooves may be longer.
-
-    Tolerance: gmsh's freedom to space them, 2 % here; those in the grooves are at most twice as long on average.
-    """
-    body = finger_mesh
-    for j in (-4, 0, 3):
-        facets = body.facet_tags.find(tags.ridge(j))
-        x = np.sort(vertices(body, facets)[:, 0])
-        if j == 0:
-            x = x[np.abs(x) < 0.3 * WAVE]
-            assert np.diff(x).max() < 1.1 * 30 * UM
-        assert len(facets) >= WAVE / (2 * 30 * UM)
-
-
-def interface(body, one, other):
-    layer = np.zeros(body.mesh.topology.index_map(2).size_local, dtype=int)
-    layer[body.cell_tags.indices] = body.cell_tags.values
-    body.mesh.topology.create_connectivity(1, 2)
-    links = body.mesh.topology.connectivity(1, 2)
-    every = range(body.mesh.topology.index_map(1).size_local)
-    return [f for f in every if sorted(layer[links.links(f)]) == sorted((one, other))]
-
-
-@pytest.mark.parametrize(
-    ("layers", "depth", "within"),
-    [
-        ((tags.STRATUM_CORNEUM, tags.VIABLE_EPIDERMIS), "sc_ve", 0.1 * UM),
-        ((tags.VIABLE_EPIDERMIS, tags.DERMIS), "ve_d", 0.5 * UM),
-        ((tags.DERMIS, tags.SUBCUTIS), "d_sub", 0.1 * UM),
-    ],
-)
-def test_interfaces_of_the_mesh(finger_mesh, profiles, layers, depth, within):
-    """Nodes between two layers are on their curve. Tolerance: splines, above all at the VE-D junction's sharp tips."""
-    nodes = vertices(finger_mesh, interface(finger_mesh, *layers))
-    assert away_from(dense(profiles, getattr(profiles, depth)), nodes) < within
-
-
 @pytest.mark.mpi
 def test_bone_rim(finger_mesh, profiles):
     """The rim is closed: its normals add up to nothing; its length is the ellipse's. Tolerance: chords of 1 mm."""
@@ -144,16 +179,6 @@ def test_finger_is_a_half_and_its_mirror_image(coarse, finger_mesh):
 
 # -- triangles with two sides on the skin ----------------------------------------------------------------------------
 SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
-
-
-@pytest.mark.parametrize("turn", [0, 1, 2])
-def test_corner_of_a_square_goes_to_its_neighbour(turn):
-    """Whatever node a triangle begins with: same area, same sense, one side each."""
-    triangles = np.array([np.roll([1, 2, 3], turn), [1, 3, 4]])
-    found = swapped(SQUARE, np.array([[1, 2], [3, 2]]), {7: triangles})[7]
-    assert {frozenset(nodes) for nodes in found.tolist()} == {frozenset((1, 2, 4)), frozenset((2, 3, 4))}
-    a, b, c = (SQUARE[found[:, k] - 1] for k in range(3))
-    np.testing.assert_allclose(np.linalg.det(np.stack([b - a, c - a], axis=1)), 1.0)
 
 
 @pytest.mark.slow

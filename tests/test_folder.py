@@ -1,16 +1,20 @@
-"""The folder of results is one scene's and one run's at a time, and no earlier run is lost for nothing."""
+"""The folder of results is one scene's and one run's at a time; checkpoints, and ranks of different scenes."""
 
 import errno
 import fcntl
 import json
 from pathlib import Path
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from mpi4py import MPI
 
 import fingerpad as fp
-from fingerpad.results.folder import LEFT, Folder, FolderError, on_rank_0
-from fingerpad.scene import Scene, from_data
+from fingerpad.results.folder import LEFT, CheckpointError, Folder, FolderError, on_rank_0
+from fingerpad.runs.checkpoint import Checkpoint
+from fingerpad.runs.solve import _refuse_different
+from fingerpad.scene import Scene, SceneError, from_data
 from tests.runs import run
 
 MESH = {"contact": 30e-6, "receptor": 80e-6, "interface": 150e-6, "growth": 0.8, "touching_half_arc": 1.3e-3}
@@ -77,15 +81,6 @@ def test_one_run_at_a_time(scene, folder, finished):
         pass
 
 
-def test_folder_of_a_refused_scene_goes_again(tmp_path):
-    """One that the run has made; not one that was there, nor what is in it."""
-    other, new = from_data({"geometry": {"ridge_count": 9}}), tmp_path / "new"
-    for out in (new, tmp_path):
-        with pytest.raises(fp.SceneError, match="geometry is not that of the default finger"):
-            fp.run(other, model="cylinders", out=out)
-    assert not new.exists() and tmp_path.exists()
-
-
 @pytest.mark.mpi
 def test_refused_on_all_ranks(scene, folder):
     """The folder is a file: the first rank finds out, and all say so."""
@@ -139,7 +134,7 @@ def test_a_crash_before_the_first_step_leaves_the_last_one(scene, folder, finish
     def crash(*_):
         raise ZeroDivisionError
 
-    monkeypatch.setattr("fingerpad.runs.attempt.Simulation", crash)
+    monkeypatch.setattr("fingerpad.runs.full.Simulation", crash)
     with pytest.raises(ZeroDivisionError):
         run(scene, folder, MPI.COMM_WORLD)
     assert kept(folder) == finished
@@ -157,8 +152,92 @@ def test_a_run_takes_the_folder(scene, folder, finished):
     assert summary["provenance"]["petsc_options"]["-fingerpad_pc_type"] == "lu"
 
 
+# -- ranks of MPI that are given different scenes are refused; each would wait for the others for ever ---------------
+@pytest.mark.parametrize(
+    ("other", "words"),
+    [
+        (fp.Scene(voltage=100), "voltage is 200 on rank 0 of MPI and 100 on rank 2"),
+        (fp.Scene(history=[{"name": "press", "f_ext": 75}]), "f_ext is 75 on rank 0 of MPI and empty on rank 2"),
+    ],
+)
+def test_first_key_that_differs_is_named(other, words):
+    comm = SimpleNamespace(allgather=lambda mine: [mine, mine, flat(other)])
+    with pytest.raises(SceneError, match=words):
+        _refuse_different(fp.Scene(), comm)
+
+
+def flat(scene):
+    kept = []
+    _refuse_different(scene, SimpleNamespace(allgather=lambda mine: kept.append(mine) or [mine]))
+    return kept[0]
+
+
 @pytest.mark.mpi
-def test_model_without_a_path_takes_a_communicator(tmp_path):
-    """Of one rank: each has a folder of its own."""
-    found = fp.run(model="cylinders", out=tmp_path / "own", comm=MPI.COMM_SELF)
-    assert found.folder == tmp_path / "own" and (tmp_path / "own" / "summary.json").exists()
+def test_different_scenes_are_refused_on_all_ranks():
+    rank, size = MPI.COMM_WORLD.rank, MPI.COMM_WORLD.size
+    scene = fp.Scene(f_ext=50 + rank, mesh={"contact": 1e-3})  # of which no finger can be meshed
+    words = "f_ext is 50 on rank 0 of MPI and 51 on rank 1" if size > 1 else "mesh.contact"
+    with pytest.raises(SceneError, match=words):
+        fp.run(scene)
+
+
+# -- checkpoints of a list that grows: what was written is not written again, and each of the last two has all of it -
+HEAD = {"source": "a"}
+
+
+def checkpoint(folder: Path) -> Checkpoint:
+    return Checkpoint(folder, {}, HEAD)
+
+
+def items(first: int, count: int) -> list[np.ndarray]:
+    return [np.arange(1000.0) + k for k in range(first, first + count)]
+
+
+def read(folder: Path) -> tuple[int, list[int]]:
+    """The number that was kept, and the items by their first values."""
+    from_there = checkpoint(folder)
+    found = from_there.read()
+    return found["number"], [int(each[0]) for each in found["items"]]
+
+
+def test_items_are_written_once(tmp_path):
+    """The file of what is new has the size of what is new, however long the list is."""
+    kept, grown = checkpoint(tmp_path), list[np.ndarray]()
+    for number in range(1, 6):
+        grown += items(2 * len(grown), 2)
+        kept.write({"number": number}, grown)
+    sizes = [file.stat().st_size for file in sorted((tmp_path / "checkpoint").glob("*.more.npz"))]
+    assert len(sizes) == 5
+    assert max(sizes) < 2.2 * 8000
+    assert max(file.stat().st_size for file in (tmp_path / "checkpoint").glob("????.npz")) < 2000
+    assert read(tmp_path) == (5, [int(each[0]) for each in grown])
+
+
+def test_goes_on_from_the_one_before(tmp_path):
+    """The last one is gone; what follows is written over what it had."""
+    kept, grown = checkpoint(tmp_path), items(0, 2)
+    for number in (1, 2, 3):
+        kept.write({"number": number}, grown)
+        grown = [*grown, *items(10 * number, 1)]
+    (tmp_path / "checkpoint" / "0003.npz").unlink()
+    again = checkpoint(tmp_path)
+    found = again.read()
+    assert [int(each[0]) for each in found["items"]] == [0, 1, 10]
+    again.write({"number": 3}, [*found["items"], *items(70, 1)])
+    assert read(tmp_path) == (3, [0, 1, 10, 70])
+
+
+def test_damaged_items(tmp_path):
+    """Of the last checkpoint, and of an earlier one."""
+    kept, grown = checkpoint(tmp_path), items(0, 2)
+    kept.write({"number": 1}, grown)
+    kept.write({"number": 2}, [*grown, *items(5, 1)])
+    more = tmp_path / "checkpoint" / "0002.more.npz"
+    whole = more.read_bytes()
+    more.write_bytes(whole[:100])
+    with pytest.raises(CheckpointError, match=r"0002\.more\.npz cannot be read .*; delete the last checkpoint"):
+        read(tmp_path)
+    more.write_bytes(whole)
+    (tmp_path / "checkpoint" / "0001.more.npz").unlink()
+    with pytest.raises(CheckpointError, match=r"0001\.more\.npz cannot be read .* run again without --resume"):
+        read(tmp_path)

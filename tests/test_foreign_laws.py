@@ -6,7 +6,7 @@ import pytest
 
 from fingerpad.cli import main
 from fingerpad.scene import Scene, SceneError, law_code
-from fingerpad.scene.law_code import LAWS, allow, imported
+from fingerpad.scene.law_code import LAWS, imported
 from tests.commands import ROOT, python
 
 MINE = """
@@ -70,11 +70,6 @@ def test_code_that_is_no_law_is_not_run(user, file, law, sentence):
     assert sentence in (text := refusal(law)) and "--laws FOLDER" in text
 
 
-def test_module_that_ends_the_program_is_a_refusal(user):
-    (user / "ends.py").write_text("raise SystemExit(3)")
-    assert refusal("ends:X") == "the module cannot be imported: 3"
-
-
 @pytest.mark.parametrize("path", ["benchmarks.demos:X", "demos.first_run:X", "tests.fuzz:X", "results.x:X"])
 def test_clone_holds_no_laws(path):
     """In the checkout's folder, as environment/run starts Python there: with the checkout on its path."""
@@ -107,16 +102,6 @@ def test_law_below_the_folder_of_a_scene_is_not_run(user, way):
     assert BELOW in (text := refusal(law)) and "name the folder of the module by --laws FOLDER" in text
 
 
-def test_resumed_folder_holds_no_laws(user, capsys):
-    got = user / "got"
-    (got / "evil.py").write_text(EVIL)
-    (got / "__init__.py").touch()
-    (got / "scene.json").write_text('{"geometry": {}, "friction": {"law": "got.evil:X"}}')
-    for words in (["run", "--resume", str(got)], ["check", str(got / "scene.json")]):
-        assert main(words) == 2
-        assert BELOW in capsys.readouterr().err
-
-
 def test_folder_of_the_shell_or_script_is_not_named(user, monkeypatch):
     """Python puts it on its path by itself."""
     (user / "evil.py").write_text(EVIL)
@@ -139,14 +124,6 @@ def test_option_names_a_folder_even_of_the_scene(user, capsys, monkeypatch):
     monkeypatch.syspath_prepend(got)
     assert main(words) == 2 and BELOW in capsys.readouterr().err
     assert main([*words, "--laws", str(got)]) == 0
-
-
-@pytest.mark.parametrize("name", ["none", "a:b", "file.py"])
-def test_folder_that_is_none_is_refused(tmp_path, name):
-    (tmp_path / "a:b").mkdir()
-    (tmp_path / "file.py").touch()
-    with pytest.raises(ValueError, match="it must be a folder, without ':' in its path"):
-        allow(tmp_path / name)
 
 
 def test_imported_module_and_installed_package_are_taken(user, monkeypatch):

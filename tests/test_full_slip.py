@@ -1,18 +1,25 @@
-"""Full slip is steady: as steady as its gaps are closed, or the slide ends; and its lengths by ridge are its length."""
+"""Full slip is steady or the slide ends; solved for from full slip it is that of the path."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from mpi4py import MPI
 
 from fingerpad.model.checks import FullSlip
+from fingerpad.model.full_slip import Conditions, FullSlips
+from fingerpad.model.options import FingerModel, plan
+from fingerpad.model.simulation import Simulation
 from fingerpad.scene import from_data
 from tests.runs import followed, path_of
 from tests.small_finger import NINE, small
 from tests.test_body import FORCE, MU_F, RIDGE, SKIN, SPRINGS, VOLTAGE, Body
 from variational.contact.augmented import AugmentedLagrangian
+from variational.contact.friction import Derjaguin
 from variational.contact.nitsche import Nitsche
 from variational.roughness.bam import BearingArea
+from variational.solvers.continuation import StepFailed
 
 pytestmark = pytest.mark.slow
 SCENE = NINE | {"f_ext": 1.0, "voltage": 100.0}
@@ -42,19 +49,6 @@ def test_slide_goes_on_the_way_it_came(end):
     assert (np.diff(places) > 0).all()
     assert places[-1] == pytest.approx(abs(first) + 0.2e-3, rel=1e-9)
     assert slid[-1].f_t == pytest.approx(np.sign(end) * 0.25, rel=1e-6)
-
-
-def test_time_goes_on_where_full_slip_is_not_steady_at_once(monkeypatch):
-    """The slide goes on from where it is, and so does its time, at the speed of the bone."""
-    steady = iter([False])
-    slides_on = FullSlip.slides_on
-    monkeypatch.setattr(FullSlip, "slides_on", lambda self, *args: slides_on(self, *args) and next(steady, True))
-    slide = {"name": "slide", "bone_x": 1e-3, "speed": 0.02, "until_full_slip": True}
-    scene = small(output={"receptors": False}).replace(history=[{"name": "press", "f_ext": 1.0}, slide])
-    simulation = followed(scene)
-    slid = [state for state in simulation.states if state.load == "slide"]
-    assert [state.time for state in slid] == pytest.approx([state.bone_x / 0.02 for state in slid], rel=1e-9)
-    assert next(steady, None) is None
 
 
 class Slid:
@@ -106,3 +100,100 @@ def test_place_of_full_slip_does_not_depend_on_the_step(contact, way):
     assert long.state.all_slip and short.state.all_slip
     assert long.state.bone_x == pytest.approx(short.state.bone_x, abs=0.3e-6)
     assert way * long.state.f_t == pytest.approx(MU_F * long.state.f_contact, rel=1e-8)
+
+
+# -- full slip solved for from full slip is that of the path, there and back; and what is refused --------------------
+LEAN = NINE | {"f_ext": 1.0, "voltage": 100.0, "output": {"errors": False, "receptors": False}}
+CHAIN = (
+    {"voltage": 50.0}, {"voltage": 0.0}, {"voltage": 80.0}, {"voltage": 80.0, "f_ext": 1.4}, {"f_ext": 0.8},
+    {"friction": 0.4}, {"electric": {"d_i": 2e-6}}, {"roughness": {"h_rms": 2e-6}}, {},
+)  # fmt: skip
+"""Each from the one before; forces, voltage, friction, insulator and roughness go there and back."""
+
+
+def model_of(changes):
+    """Return the model of the scene with changes, with the attraction also where it has no voltage."""
+    scene = from_data(LEAN | changes)
+    return FingerModel(scene, plan(from_data(LEAN)))
+
+
+def path_to(changes):
+    simulation = Simulation(model_of(changes), MPI.COMM_WORLD)
+    assert simulation.run() is None
+    return simulation
+
+
+@pytest.fixture(scope="module")
+def solved():
+    """The full slips of a path's end and of the chain from there."""
+    slips = FullSlips(path_to({}))
+    found = [slips.first(Conditions.of(model_of({})))]
+    for changes in CHAIN:
+        found.append(slips.solve(Conditions.of(model_of(changes)), found[-1]))
+    return slips, found
+
+
+@pytest.mark.mpi
+def test_full_slip_is_that_of_the_path(solved):
+    """Air gaps are solved to 1e-6, and forces depend on them less than in proportion."""
+    for changes, direct in zip(CHAIN[:-1], solved[1][1:-1], strict=True):
+        state = path_to(changes).states[-1]
+        assert direct.state.f_t == pytest.approx(state.f_t, rel=1e-6), changes
+        assert direct.state.contact_length == pytest.approx(state.contact_length, rel=1e-5), changes
+        assert direct.state.ridges_in_contact == state.ridges_in_contact
+        assert direct.state.f_ext == pytest.approx(state.f_ext, rel=1e-9)
+        assert direct.state.slip_held and direct.state.stable
+
+
+@pytest.mark.mpi
+def test_chain_returns_to_where_it_began(solved):
+    first, last = solved[1][0].state, solved[1][-1].state
+    assert last.f_t == pytest.approx(first.f_t, rel=1e-6)
+    assert last.bone_x == pytest.approx(first.bone_x, abs=1e-15), "the bone does not move with the chain"
+    assert first.reached == "path"
+    assert solved[1][1].state.reached == "full slip from voltage 100 V"
+    assert "h_rms=2e-06" in last.reached
+
+
+@pytest.mark.long
+def test_voltage_that_changes_in_sliding_ends_in_direct_states(solved):
+    """A waveform in steps, each slid on to full slip again: its ends are the states without a path, in its order."""
+    slips, (first, *_) = solved
+    far, voltages = 2e-3, (50.0, 0.0, 80.0)
+    history = [{"name": "press", "f_ext": 1.0}, {"name": "charge", "voltage": 100.0}]
+    history += [{"name": "slide", "bone_x": far, "until_full_slip": True}]
+    for k, voltage in enumerate(voltages):
+        history += [{"name": f"change {k}", "voltage": voltage, "bone_x_by": 0.1e-3}]
+        history += [{"name": f"on {k}", "bone_x_by": 1e-3, "until_full_slip": True}]
+    loads = {key: LEAN[key] for key in LEAN if key not in ("f_ext", "voltage")} | {"history": history}
+    scene = from_data(loads)
+    simulation = Simulation(FingerModel(scene, plan(scene)), MPI.COMM_WORLD)
+    assert simulation.run() is None
+    direct = first
+    for k, voltage in enumerate(voltages):
+        direct = slips.solve(replace(direct.conditions, voltage=voltage), direct)
+        end = [state for state in simulation.states if state.load == f"on {k}"][-1]
+        assert end.slip_held and end.f_t == pytest.approx(direct.state.f_t, rel=1e-6)
+        assert end.ridges_in_contact == direct.state.ridges_in_contact
+
+
+def test_what_is_not_found_is_refused(solved):
+    """A ridge that cannot touch on this mesh; another law of friction, whose forms are others; no bad state is kept."""
+    slips, (first, *_) = solved
+    with pytest.raises(StepFailed, match="meshed to touch, is in contact"):
+        slips.solve(replace(first.conditions, f_ext=40.0), first)
+    with pytest.raises(ValueError, match="that law with other numbers"):
+        slips.solve(replace(first.conditions, friction=Derjaguin(0.25, 1e3)), first)
+    again = slips.solve(first.conditions, first)
+    assert again.state.f_t == pytest.approx(first.state.f_t, rel=1e-6)
+
+
+def test_unsteady_and_unstable_states_are_refused(solved, monkeypatch):
+    slips, (first, *_) = solved
+    there = replace(first.conditions, voltage=90.0)
+    monkeypatch.setattr("fingerpad.model.checks.Checked.stable", False)
+    with pytest.raises(StepFailed, match="not stable|lambda_min"):
+        slips.solve(there, first)
+    monkeypatch.setattr("fingerpad.model.state._STEADY", -1.0)
+    with pytest.raises(StepFailed, match="not steady"):
+        slips.solve(there, first)

@@ -3,12 +3,10 @@
 import numpy as np
 import pytest
 
-from variational.roughness import contacts, gaps, tables
-from variational.roughness.contacts import gap_table, measured_table
-from variational.roughness.gaps import GapTable, bins
-from variational.roughness.halfspace import press
+from variational.roughness import gaps, halfspace
+from variational.roughness.gaps import HURSTS, GapTable, bins, ratios
+from variational.roughness.halfspace import gap_table, measured_table, press
 from variational.roughness.spectrum import SelfAffine
-from variational.roughness.tables import HURSTS, ratios
 from variational.roughness.topography import HeightMap
 
 RATIO, WIDTH = 8.0, 8 * np.pi
@@ -56,7 +54,7 @@ def test_tables_of_the_package(hurst, ratio):
 
     Contact grows and gaps close with pressure.
     """
-    ((part, found),) = tables.of_spectrum(hurst, ratio)
+    ((part, found),) = gaps.of_spectrum(hurst, ratio)
     assert part == 1 and len(found.area) == (12 if (hurst, ratio) == (0.75, 64) else 6)
     np.testing.assert_allclose(found.area + found.weight.sum(axis=-1), 1, rtol=1e-5)
     assert (np.diff(found.area) > 0).all() and (np.diff(found.mean_gap()) < 0).all()
@@ -68,9 +66,9 @@ def test_table_of_the_package_is_made_again():
     """The first surface of the ratio 16 at two of its pressures, to what another library of transforms rounds."""
     from benchmarks.gap_tables import surfaces
 
-    kept = tables.of_spectrum(0.75, 16.0)[0][1]
+    kept = gaps.of_spectrum(0.75, 16.0)[0][1]
     for k in (10, 20):
-        ((_, found),) = contacts.over_pressure(surfaces(16.0, 1)[0], 2 * np.pi, [kept.pressure[k]])
+        ((_, found),) = halfspace.over_pressure(surfaces(16.0, 1)[0], 2 * np.pi, [kept.pressure[k]])
         assert found.area == pytest.approx(kept.area[0, k], rel=1e-3)
         assert found.weight @ found.mean == pytest.approx(kept.mean_gap()[0, k], rel=1e-4)
 
@@ -85,9 +83,9 @@ def test_between_tables_is_the_contact_itself(hurst, ratio):
     from benchmarks.gap_tables import surfaces
 
     (first, *_), h_0 = surfaces(ratio, 1, hurst=hurst), 0.166
-    between = tables.of_spectrum(hurst, ratio)
+    between = gaps.of_spectrum(hurst, ratio)
     for pressure in between[0][1].pressure[[8, 14]]:
-        ((_, found),) = contacts.over_pressure(first, 2 * np.pi, [pressure])
+        ((_, found),) = halfspace.over_pressure(first, 2 * np.pi, [pressure])
         alone = GapTable(np.array([pressure]), *(np.array(each)[None, None] for each in found))
         for name, arguments, tolerance in (("mean_gap", (), 0.01), ("inverse_square", (h_0, True), 0.03)):
             expected = 0.0
@@ -99,18 +97,18 @@ def test_between_tables_is_the_contact_itself(hurst, ratio):
 
 def test_between_ratios_and_exponents():
     """Parts of the neighbours add to one, by the ratio's logarithm and the exponent; beyond the ends it is refused."""
-    (low, _), (high, _) = tables.of_spectrum(0.75, 16 * np.sqrt(2))
+    (low, _), (high, _) = gaps.of_spectrum(0.75, 16 * np.sqrt(2))
     assert low == pytest.approx(0.5) and high == pytest.approx(0.5)
-    assert [part for part, _ in tables.of_spectrum(0.65, 8.0)] == pytest.approx([2 / 3, 1 / 3])
-    parts = [part for part, _ in tables.of_spectrum(0.825, 8 * np.sqrt(2))]
+    assert [part for part, _ in gaps.of_spectrum(0.65, 8.0)] == pytest.approx([2 / 3, 1 / 3])
+    parts = [part for part, _ in gaps.of_spectrum(0.825, 8 * np.sqrt(2))]
     assert parts == pytest.approx([0.25] * 4)
     assert ratios(0.75) == [8.0, 16.0, 32.0, 64.0] and set(ratios(0.8)) <= set(ratios(0.75))
     for ratio in (7.0, 65.0):
         with pytest.raises(ValueError, match=rf"{ratio:g} times the shortest one; tables .* for 8 to 64 times"):
-            tables.of_spectrum(0.75, ratio)
+            gaps.of_spectrum(0.75, ratio)
     for hurst in (0.5, 0.95):
         with pytest.raises(ValueError, match=rf"hurst is {hurst:g}; tables of the package are for 0.6 to 0.9"):
-            tables.of_spectrum(hurst, 16.0)
+            gaps.of_spectrum(hurst, 16.0)
 
 
 # -- measured maps -----------------------------------------------------------------------------------------
@@ -124,49 +122,22 @@ def test_measured_map_is_computed_once(cache, surface):
     """The second time nothing is solved; the table is found by its name; another height makes another name."""
     measured = HeightMap(1e-6 * surface.heights, (100e-6, 100e-6)).cut((0, 0), (64, 64)).detrended("curvature")
     done: list[tuple[int, int]] = []
-    name, h_rms, wavelength = contacts.keep(measured, lambda *each: done.append(each))
+    name, h_rms, wavelength = halfspace.keep(measured, lambda *each: done.append(each))
     assert done[-1] == (len(gaps.PRESSURES), len(gaps.PRESSURES)) and wavelength == pytest.approx(50e-6)
     again: list[tuple[int, int]] = []
-    assert contacts.keep(measured, lambda *each: again.append(each))[0] == name and not again
-    ((_, found),) = tables.of_map(name)
+    assert halfspace.keep(measured, lambda *each: again.append(each))[0] == name and not again
+    ((_, found),) = gaps.of_map(name)
     whole = measured_table(measured)[0]
     np.testing.assert_allclose(found.mean_gap(), whole.mean_gap(), rtol=1e-6)
     other = measured.heights.copy()
     other[3, 3] += 1e-9
-    assert contacts.keep(HeightMap(other, measured.size))[0] != name
+    assert halfspace.keep(HeightMap(other, measured.size))[0] != name
     assert h_rms == measured.h_rms
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("waves", "low", "high"), [(1, 0.03, 0.13), (2, 0.0, 0.05)])
-def test_size_of_what_mirror_images_change(waves, low, high):
-    """Maps cut out of a larger surface have a smaller air gap than it, by what the docstring has, or some of that.
-
-    All cuts of one surface: chance differs by 2 % at most from one surface to the next.
-    """
-    spectrum = SelfAffine(1.0, 0.75, 2 * np.pi, plateau=False, shortest=2 * np.pi / RATIO)
-    whole, n, h_0 = spectrum.surface((256, 256), (2 * WIDTH, 2 * WIDTH), 0), 32 * waves, 0.166
-    cuts = [whole.cut((i, j), (n, n)).detrended("curvature") for i in range(0, 256, n) for j in range(0, 256, n)]
-
-    def air_gap(maps: list[HeightMap], pressure: float) -> float:
-        square = [((h_0 + press(each, pressure, 1.0).gap) ** -2).mean() for each in maps]
-        return float(np.mean(square) ** -0.5) - h_0
-
-    for pressure in (0.07, 0.3):
-        part = air_gap([contacts.mirrored(cut) for cut in cuts], pressure) / air_gap([whole], pressure)
-        assert low < 1 - part < high
-
-
-def test_pixels_of_a_measured_map_count_once():
-    """At the lowest pressure of the table 20 of the map's own pixels touch, or 80 of its mirror images."""
-    measured = SelfAffine(1.0, 0.8, 40.0, shortest=12.0).surface((48, 48), (100.0, 100.0), 1).detrended("curvature")
-    found = measured_table(measured)[0]
-    assert found.area[0, 0] * measured.heights.size >= contacts.FEWEST_PIXELS
 
 
 def test_map_that_is_not_there(cache):
     with pytest.raises(ValueError, match="surface is 'abc', and .* has no table of that name .*; compute it again by"):
-        tables.of_map("abc")
+        gaps.of_map("abc")
 
 
 X = np.linspace(-1, 1, 32)
@@ -176,14 +147,14 @@ WAVES = HeightMap(np.cos(7 * X)[:, None] * np.cos(5 * X) * 1e-6, (1e-4, 1e-4))
 @pytest.mark.parametrize("content", [b"", b"nothing", b"PK\x03\x04 a zip file that was cut", None], ids=str)
 def test_damaged_table_is_computed_again(cache, content):
     """Where a computer stopped while it was written, or a disk was full: by its name it is refused, by its map made."""
-    name = contacts.keep(WAVES)[0]
+    name = halfspace.keep(WAVES)[0]
     file = cache / f"gaps_{name}.npz"
     file.write_bytes(file.read_bytes()[:2000] if content is None else content)
     with pytest.raises(ValueError, match=rf"surface is '{name}', and .*{file.name} holds no table of gaps"):
-        tables.of_map(name)
+        gaps.of_map(name)
     done: list[int] = []
-    assert contacts.keep(WAVES, lambda *each: done.append(each[0]))[0] == name and done
-    assert len(tables.of_map(name)) == 1 and sorted(cache.iterdir()) == [file]
+    assert halfspace.keep(WAVES, lambda *each: done.append(each[0]))[0] == name and done
+    assert len(gaps.of_map(name)) == 1 and sorted(cache.iterdir()) == [file]
 
 
 @pytest.mark.parametrize(("place", "why"), [("file", "File exists"), ("/proc", "No such file or directory")])
@@ -193,7 +164,7 @@ def test_cache_that_takes_no_files_is_refused_before_contacts_are_solved(tmp_pat
     monkeypatch.setenv("FINGERPAD_CACHE", str(tmp_path / place))
     done: list[int] = []
     with pytest.raises(ValueError, match=rf"table .* cannot be kept in .*{place} .{why}.; name another folder"):
-        contacts.keep(WAVES, lambda *each: done.append(each[0]))
+        halfspace.keep(WAVES, lambda *each: done.append(each[0]))
     assert not done
 
 
@@ -208,13 +179,4 @@ def test_cache_that_takes_no_files_is_refused_before_contacts_are_solved(tmp_pat
 )
 def test_bad_maps(cache, heights, size, words):
     with pytest.raises(ValueError, match=words):
-        contacts.keep(HeightMap(heights, size))
-
-
-def test_too_few_pixels():
-    """One bump on 8 x 8 pixels never has 20 in contact at six pressures."""
-    bump = np.exp(-((np.arange(8) - 3.5) ** 2))
-    with pytest.raises(
-        ValueError, match="pressures .* have 20 pixels or more in contact .* measure with smaller pixels"
-    ):
-        gap_table([HeightMap(bump[:, None] * bump, (1.0, 1.0))], 1.0)
+        halfspace.keep(HeightMap(heights, size))

@@ -1,4 +1,4 @@
-"""What a notebook shows of results: tables, pictures and a progress bar, in a kernel of its own."""
+"""What a notebook shows of results, and demos as notebooks."""
 
 import json
 import sys
@@ -6,14 +6,12 @@ from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
-from mpi4py import MPI
 
 import fingerpad as fp
-from fingerpad import notebook
-from fingerpad.results.pictures import style
-from fingerpad.results.terminal import Console
+from benchmarks.notebook import main
 from tests.commands import python
 from tests.small_finger import small
+from variational.caution import Caution
 
 pytestmark = pytest.mark.slow
 CELLS = """
@@ -63,16 +61,10 @@ def test_figure_is_a_picture(shown, cell):
 # -- without a kernel ------------------------------------------------------------------------------------------
 def test_words_are_escaped():
     """Cautions and notes may have words of anybody's."""
-    found = replace(fp.run(model="cylinders"), cautions=("<script>a",), notes=("<b>note",))._repr_html_()
+    found = replace(fp.run(model="cylinders"), cautions=(Caution("a", "<script>a"),), notes=("<b>note",))._repr_html_()
     assert "&lt;script&gt;a" in found and "&lt;b&gt;note" in found and "<script>" not in found
     sweep = fp.sweep(model="cylinders", voltage=[100.0], quiet=True)
     assert "&lt;i&gt;" in replace(sweep, notes=("<i>",))._repr_html_()
-
-
-def test_picture_of_a_figure_has_its_size_on_the_page():
-    """96 pixels an inch, whatever the resolution of the PNG."""
-    data, size = style.figure(height=2.0, width=3.0)._repr_png_()
-    assert data[:4] == b"\x89PNG" and size == {"width": 288.0, "height": 192.0}
 
 
 @pytest.mark.parametrize("backend", ["module://matplotlib_inline.backend_inline", "module://none.at_all", "nonsense"])
@@ -86,20 +78,6 @@ def test_pictures_of_a_command_have_no_backend(tmp_path, backend):
         assert (done := python("-c", code, MPLBACKEND=backend)).returncode == 0, done.stderr
 
 
-def test_bar_is_written_over(monkeypatch):
-    """In one output of the cell, as HTML that is escaped; it is empty at the end."""
-    shown: list[str] = []
-    handle = SimpleNamespace(update=lambda data, raw: shown.append(data["text/html"]))
-    display = SimpleNamespace(display=lambda data, raw, display_id: handle)
-    monkeypatch.setitem(sys.modules, "IPython", SimpleNamespace(get_ipython=lambda: SimpleNamespace(kernel=1)))
-    monkeypatch.setitem(sys.modules, "IPython.display", display)
-    assert notebook.running()
-    console = Console(MPI.COMM_SELF, lines=False)
-    console.phase("<b>meshing", 0.0)
-    console.close()
-    assert shown == ['<progress value="0.000" max="1"></progress> 0 % &lt;b&gt;meshing', ""]
-
-
 def test_each_step_is_passed_on():
     """In order, with the part of the path that is done; a call that raises ends the run."""
     seen = []
@@ -110,3 +88,25 @@ def test_each_step_is_passed_on():
     assert 0 <= min(parts) == parts[0] < 0.9 < max(parts) <= 1
     with pytest.raises(ZeroDivisionError):
         fp.run(scene, on_step=lambda state, part: 1 / 0)
+
+
+# -- demos as notebooks: valid, without output, and their cells run one after the other ------------------------------
+def test_cells_run(tmp_path, monkeypatch, capsys):
+    """As Jupyter runs them: with its own arguments, without the script's file; the last cell shows its picture."""
+    shown: list[str] = []
+    monkeypatch.chdir(tmp_path)
+    assert main(["drive_over_frequency", "made"]) == 0
+    kept = json.loads((tmp_path / "made" / "drive_over_frequency.ipynb").read_text(encoding="utf-8"))
+    display = SimpleNamespace(Image=str, display=shown.append)
+    ipython = SimpleNamespace(display=display, version_info=(9, 0), get_ipython=lambda: None)
+    monkeypatch.setitem(sys.modules, "IPython", ipython)
+    monkeypatch.setitem(sys.modules, "IPython.display", display)
+    monkeypatch.setattr(sys, "argv", ["ipykernel_launcher.py", "-f", "kernel.json"])
+    monkeypatch.setattr(sys, "path", [*sys.path])
+    monkeypatch.setenv("PYTHONPATH", "")
+    names: dict = {"__name__": "__main__"}
+    for cell in kept["cells"]:
+        if cell["cell_type"] == "code":
+            exec("".join(cell["source"]), names)
+    assert shown == ["results/demos/drive_over_frequency/share.png"]
+    assert capsys.readouterr().out

@@ -82,7 +82,7 @@ def test_caution_names_the_end_of_the_widest_region():
     scene = from_data({"voltage": round(voltage) + 1})
     (found,) = cylinder_errors.outside(scene, 1.0)
     assert (found.key, found.value, found.known) == ("voltage", f"{scene.voltage:g} V", f"0 to {voltage:g} V")
-    assert str(found) in cylinder_errors.cautions(scene, 1.0)[0] and not cylinder_errors.outside(Scene(), pull)
+    assert str(found) in str(cylinder_errors.cautions(scene, 1.0)[0]) and not cylinder_errors.outside(Scene(), pull)
     most = max(each.ranges[cylinder_errors.PULL][1] for each in cylinder_errors.REGIONS)
     (found,) = cylinder_errors.outside(Scene(), most + 0.1)
     assert found.key == cylinder_errors.PULL and found.known == f"0 to {pull:g}"
@@ -94,11 +94,8 @@ def test_caution_names_the_end_of_the_widest_region():
         from_data({"f_ext": 451.0}),
         from_data({"voltage": 401.0}),
         from_data({"friction": 1.01}),
-        from_data({"electric": {"d_i": 11e-6}}),
         from_data({"geometry": {"ridge_count": 21}}),
-        from_data({"contact": {"eps_n": 2e12}}),
         from_data({"roughness": {"h_rms": 4e-6}}),
-        from_data({"materials": {"dermis": {"poisson": 0.49}}}),
         Scene(friction=Derjaguin(0.25, 1e3)),
     ],
     ids=str,
@@ -115,19 +112,8 @@ def test_losses_of_a_drive_count_under_a_drive_alone():
     losses = {"electric": {"tissue": "dry", "leak": "sliding dry", "follows": "mean"}}
     drive = {"voltage": {"waveform": "sine", "rms": 150.0, "frequency": 100.0}}
     assert cylinder_errors.cautions(from_data(losses)) == []
-    (text,) = cylinder_errors.cautions(from_data(losses | drive))
+    (text,) = map(str, cylinder_errors.cautions(from_data(losses | drive)))
     assert "electric" in text
-
-
-def test_other_finger_is_named_by_its_tables():
-    """Not by each of its 21 sizes and moduli; two keys of a table are named."""
-    (text,) = cylinder_errors.cautions(Scene(finger="woman"))
-    assert text.endswith(
-        "here: geometry is another one, and it is known for that of the default scene; "
-        "materials is another one, and it is known for that of the default scene"
-    )
-    (text,) = cylinder_errors.cautions(from_data({"electric": {"d_i": 2e-5, "eps_i": 40.0}}))
-    assert "electric.d_i is 2e-05 m" in text and "electric.eps_i is 40" in text
 
 
 # -- the kept runs ---------------------------------------------------------------------------------------------------
@@ -141,19 +127,6 @@ def test_lengths_in_the_program_are_the_runs():
             depth = default_finger.INDENTATIONS[state][k]
             assert depth == pytest.approx(-run[f"{state}_bone_height"], abs=0.5e-7)
             assert default_finger.RIDGES[state][k] == run[f"{state}_ridges_in_contact"]
-
-
-def test_program_of_the_page_prints_what_the_model_has():
-    """So that the lengths and the known errors can be put there when the runs are made anew."""
-    lines = models.in_the_program(harness.kept("models").numbers).splitlines()
-    count = len(models.FORCES)
-    assert default_finger.FORCES[:count] == models.FORCES
-    for state, lengths in default_finger.LENGTHS.items():
-        assert f"LENGTHS {state}: {', '.join(f'{1e3 * each:.4f}e-3' for each in lengths[:count])}" in lines
-        assert f"RIDGES {state}: {', '.join(map(str, default_finger.RIDGES[state][:count]))}" in lines
-    for state in ("full_slip", "charged"):
-        bands = cylinder_errors.REGIONS[0].errors[state]
-        assert all(f"KNOWN_ERROR {state}_{key}: {each:.3f}" in lines for key, each in bands.items())
 
 
 def test_lengths_between_known_forces_are_a_power_law():
@@ -172,13 +145,3 @@ def test_kept_answers_are_those_of_the_program():
     known = harness.kept("models").numbers["scenes"][models.name(75.0, 200.0)]["cylinders"]["summary"]
     found = models.answer(cylinders.solve(from_data({"f_ext": 75.0, "voltage": 200.0})).to_dict())["summary"]
     assert found == pytest.approx(known, rel=1e-9)
-
-
-def test_a_value_beyond_all_ranges_is_told_the_nearest_one():
-    """Of regions that it leaves by one key alone: that whose end is nearest by ratio, whichever is the widest."""
-    ends = [region.ranges["friction"] for region in cylinder_errors.REGIONS[1:]]
-    for friction, end in ((0.05, min(low for low, _ in ends)), (1.5, max(high for _, high in ends))):
-        (outside,) = cylinder_errors.outside(Scene(friction=friction, voltage=150.0))
-        assert outside.key == "friction"
-        assert f"{end:g}" in outside.known.split(" to ")
-    assert cylinder_errors.find(Scene(friction=0.1, voltage=150.0)) is not None

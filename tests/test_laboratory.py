@@ -1,6 +1,6 @@
-"""Tables as laboratories write them, and the friction coefficient of their rows without voltage."""
+"""Tables as laboratories write them, beside runs, and the friction coefficient of rows without voltage."""
 
-import re
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -8,12 +8,16 @@ import pytest
 
 import fingerpad as fp
 from fingerpad.cli import main
-from fingerpad.cli.output import write
+from fingerpad.measurements.compare import comparison, computed, refuse_mixed
 from fingerpad.measurements.table import read
-from fingerpad.results.quantities import Output
+from fingerpad.results.result import Result
 from fingerpad.runs.sweep import sweep
-from fingerpad.scene import Scene
-from tests.measures import rows_of
+from fingerpad.scene import Scene, SceneError
+from fingerpad.slices.errors import MESH
+from fingerpad.slices.finger import WholeFinger
+from fingerpad.slices.total import Total
+from tests.measures import contact_state, rows_of
+from variational.state import Errors
 
 
 @pytest.fixture(scope="module")
@@ -45,17 +49,6 @@ def test_semicolons_commas_percent_and_signs(tmp_path, encoding):
     assert (found.turned, found.ignored, found.about["source"]) == (1, ("Temperature (°C)",), "Größe und Söhne")
 
 
-def test_percent_in_cells_and_of_friction(tmp_path):
-    """In cells as in the head; a spread in percent of a friction without is a part of that."""
-    file = tmp_path / "lab.csv"
-    file.write_text("force (N/m),friction,spread (%)\n25,31 %,4\n50,28%,\n")
-    found = read(file).rows
-    assert found.measured.tolist() == pytest.approx([0.31, 0.28])
-    assert found.spread.iloc[0] == pytest.approx(0.04)
-    file.write_text("force (N/m),contact length (mm),spread\n25,2,5%\n")
-    assert read(file).rows.spread.iloc[0] == pytest.approx(0.05 * 2e-3)
-
-
 def frame(**columns):
     heads = {"force": "force (N/m)", "voltage": "voltage (V)", "friction": "friction (1)"}
     return pd.DataFrame({heads.get(name, name): values for name, values in columns.items()})
@@ -75,13 +68,6 @@ def test_coefficient_is_fitted_without_voltage(grid):
     )
 
 
-def test_forces_are_divided(grid):
-    """A friction force at 0 V is one of a coefficient, too."""
-    table = pd.DataFrame({"force (N/m)": [25, 75], "voltage (V)": [0, 200], "friction force (N/m)": [-10.0, -30.0]})
-    found = fp.compare(table, grid)
-    assert found.attrs["fit"]["mu_0"] == pytest.approx(0.4) and found.attrs["turned"] == 2
-
-
 @pytest.mark.parametrize("columns", [{"voltage": [0, 0]}, {"voltage": [100, 200]}])
 def test_nothing_is_fitted_to_one_kind_of_rows(grid, columns):
     """Without rows at 0 V, or with no others, computed friction is that of the scene."""
@@ -93,7 +79,7 @@ def test_command_prints_fit_and_remarks(grid, tmp_path, capsys):
     """Fit, signs and ignored columns in words; a column for the coefficient in the file; a picture."""
     file = tmp_path / "lab.csv"
     file.write_text(LABORATORY + "75;200;60;;23\n75;200;64;;23\n75;200;40;;22\n25;0;24;;22\n")
-    argv = ["compare-data", str(file), "--sweep", str(grid.folder)]
+    argv = ["compare", str(file), "--sweep", str(grid.folder)]
     assert main([*argv, "--out", str(tmp_path / "lab.png"), "--csv", str(tmp_path / "out.csv")]) == 0
     out = capsys.readouterr().out
     assert "Columns not read: Temperature (°C).\n" in out
@@ -122,14 +108,6 @@ def test_voltages_are_effective(head, effective):
     """Of a sine: its amplitude over the root of 2."""
     frame = pd.DataFrame({"force (N)": [0.5], head: [100], "friction [-]": [0.3]})
     assert voltages(frame.assign(remark=["moist"])) == pytest.approx([effective], rel=1e-7)
-
-
-def test_column_that_may_be_a_voltage_is_not_taken_for_one():
-    frame = pd.DataFrame({"force (N)": [0.5], "Vpp (V)": [100.0], "friction (1)": [0.3]})
-    said = "{'Vpp (V)': 'voltage (V)' or 'voltage (V peak to peak)'}, or leave it out by {'Vpp (V)': ''}"
-    with pytest.raises(fp.SceneError, match=re.escape(said)):
-        read(frame)
-    assert voltages(frame, {"Vpp (V)": "voltage (V peak to peak)"}) == pytest.approx([35.355339])
 
 
 def test_categorical_and_nullable_columns():
@@ -162,17 +140,94 @@ def test_units_stand_where_they_stand(text, tmp_path):
     assert found.rows[["force", "measured"]].iloc[0].tolist() == pytest.approx([0.5, 120e-6], rel=1e-12)
 
 
-# -- the command ---------------------------------------------------------------------------------------------------
-@pytest.mark.parametrize("mark", "=+-@＝\t")
-def test_first_letters_of_formulas(mark, tmp_path):
-    write(tmp_path / "out.csv", [Output("a", "")], [{"a": f"{mark}1+1"}, {"a": "1+1"}])
-    assert (tmp_path / "out.csv").read_text() == f"a\n'{mark}1+1\n1+1\n"
+# -- runs beside tables of measurements: what of a run is compared, and which runs go together -----------------------
+def state(step, f_ext, voltage=0.0, bone_x=0.0, **more):
+    pressed = {"f_ext": f_ext, "f_contact": f_ext, "bone_height": -1e-5 * f_ext, "contact_length": 1e-4 * f_ext}
+    return contact_state(step=step, voltage=voltage, bone_x=bone_x, **pressed | more)
 
 
-def test_misfit_without_voltage_is_named(grid, tmp_path, capsys):
-    """It says nothing of the attraction; one row under voltage and the sentence is gone."""
-    for more in ("", "75,200,9\n"):
-        (tmp_path / "lab.csv").write_text(f"force (N/m),voltage (V),contact length (mm)\n75,0,9\n{more}")
-        assert main(["compare-data", str(tmp_path / "lab.csv"), "--sweep", str(grid.folder)]) == 0
-        out = capsys.readouterr().out
-        assert ("All compared rows are at 0 V: attraction is not compared.\n" in out) == (more == "")
+def compared(runs, table):
+    return comparison(table, computed(runs, table))
+
+
+def ratio(runs, table):
+    found = compared(runs, table)
+    return found.computed.to_numpy() / found.measured.to_numpy()
+
+
+def test_press_of_a_run_is_compared(table):
+    """The states on the way down and no later ones; full slip is one state."""
+    steps = (state(1, 10.0), state(2, 20.0), state(3, 20.0, 100.0), state(4, 20.0, 100.0, 1e-3, mu_app=0.4))
+    run = Result(Scene(), "full", steps[1], steps[2], steps[3], steps=steps)
+    pressed = read(table("# state: uncharged\nforce (N/m), depth (mm)\n15, 0.3\n"))
+    assert compared(run, pressed).computed.tolist() == pytest.approx([1.5e-4])
+    assert ratio(run, pressed) == pytest.approx([0.5])
+    slip = read(table("friction (1)\n0.2\n"))
+    assert ratio([run], slip) == pytest.approx([2.0])
+    with pytest.raises(SceneError, match="have no state of full slip"):
+        computed([Result(Scene(), "full", steps[1], None, None, steps=steps[:2])], slip)
+
+
+def test_errors_of_named_states_are_carried(table):
+    """Of the cross-section and of the whole finger; a step of the press has none, but for the named state's own."""
+    steps = (state(1, 10.0), state(2, 20.0), state(4, 20.0, 100.0, 1e-3, mu_app=0.4))
+    uncharged, slip = replace(steps[1], error=Errors(bone_height=2e-6)), replace(steps[2], error=Errors(mu_app=0.01))
+    finger = WholeFinger({"full_slip": total(0.4, 8e-5)}, "test", {"full_slip": {MESH: {"contact_area": 3e-3}}})
+    run = Result(Scene(), "full", uncharged, None, slip, steps=steps, finger=finger)
+    for text, error in (
+        ("# state: uncharged\nforce (N/m), depth (mm)\n20, 0.2\n10, 0.1\n", [2e-6, np.nan]),
+        ("friction (1)\n0.2\n", [0.01]),
+        ("contact area (mm^2)\n20\n", [3e-3 * finger.values("full_slip")["contact_area"]]),
+        ("gross area (mm^2)\n20\n", [np.nan]),
+    ):
+        asked = read(table(text))
+        np.testing.assert_array_equal(compared([run], asked).error, error)
+
+
+def test_whole_finger_is_compared(table):
+    """Newtons and mm² are of the runs' whole fingers, by force and voltage; a cross-section has none."""
+    finger = [total(0.4, 8e-5), total(0.6, 1e-4)]
+    slip = [state(4, 40.0, 100.0, mu_app=0.3), state(4, 60.0, 100.0, mu_app=0.3)]
+    runs = [
+        Result(Scene(), "full", None, None, s, finger=WholeFinger({"full_slip": f}, "test"))
+        for s, f in zip(slip, finger, strict=True)
+    ]
+    area = read(table("force (mN), voltage (V), gross area (mm^2), spread (mm^2)\n500, 100, 45, 50\n"))
+    assert area.whole and area.rows.iloc[0].to_dict() == pytest.approx(
+        {"force": 0.5, "voltage": 100.0, "measured": 4.5e-5, "spread": 5e-5}
+    )
+    power = np.log(1e-4 / 8e-5) / np.log(0.6 / 0.4)
+    assert ratio(runs, area) == pytest.approx([8e-5 * 1.25**power / 4.5e-5])
+    friction = read(table("force (N), friction (1)\n0.4, 0.25\n"))
+    assert ratio(runs[:1], friction) == pytest.approx([2.0])
+    with pytest.raises(SceneError, match="the run has no newtons"):
+        computed([Result(Scene(), "full", None, None, slip[0])], friction)
+
+
+def total(force, area):
+    """Return a whole finger of one slice, 1 mm thick, whose friction is half its force."""
+    values = {"f_ext": force, "f_t": force / 2, "f_electrostatic": 0.0, "contact_length": area / 5, "gross_width": area}
+    one = np.ones(1)
+    return Total(1e-3, 0 * one, one, 1e-3 * one, force, {name: value * one for name, value in values.items()})
+
+
+# -- runs together -------------------------------------------------------------------------------------------
+def test_runs_of_other_models_and_screens_are_refused(tmp_path):
+    """The model is no key of a scene."""
+    runs = [Result(Scene(), model, None, None, None, folder=tmp_path / model) for model in ("full", "cylinders")]
+    with pytest.raises(SceneError, match="model is 'full' in .*full and 'cylinders' in .*cylinders; give runs"):
+        refuse_mixed(runs)
+    runs = [Result(Scene(electric={"d_i": d_i}), "full", None, None, None) for d_i in (1e-6, 5e-6)]
+    with pytest.raises(SceneError, match="electric.d_i is 1e-06 in a run and 5e-06 in a run; give runs that differ in"):
+        refuse_mixed(runs)
+
+
+def test_forces_on_the_finger_may_differ():
+    """And be those at its centre; all else may not."""
+
+    def under(force, **changes):
+        return Result(Scene(force=force, **changes), "full", None, None, None)
+
+    refuse_mixed([under(0.3, voltage=100), under(0.5, voltage=150), Result(Scene(), "full", *[None] * 3)])
+    with pytest.raises(SceneError, match=r"friction is 0\.25 in a run and 0\.3 in a run"):
+        refuse_mixed([under(0.3), under(0.5, friction=0.3)])

@@ -1,17 +1,17 @@
-"""The ladder's rungs: one set of keys, forces in balance, sources named, and what they cannot answer refused."""
-
-from dataclasses import replace
+"""The closed form: forces in balance, sources named, fingers similar to the default one, and refusals."""
 
 import numpy as np
 import pytest
 
-from fingerpad.cli import compare
+import fingerpad as fp
 from fingerpad.reduced import cylinders
 from fingerpad.reduced.cylinder_errors import REGIONS
+from fingerpad.reduced.default_finger import Similar, similar
 from fingerpad.scene import SceneError, from_data
+from fingerpad.scene.fingers import SOFT
+from geometry.parameters import Fingertip
 from tests.test_laws import Held
 from variational.contact.friction import Derjaguin
-from variational.state import Errors
 
 
 def scene(**data):
@@ -31,15 +31,6 @@ def test_forces_balance(default, state):
     assert s.f_contact - s.f_electrostatic == pytest.approx(75.0, rel=1e-9)
 
 
-def test_uncharged_length_is_the_runs(default):
-    """At a force of the runs nothing is interpolated; they are kept with four digits."""
-    found = cylinders.solve(scene(f_ext=50.0, voltage=0.0))
-    assert found.charged.contact_length == pytest.approx(1.0542e-3, rel=1e-9)
-    assert found.full_slip.contact_length == pytest.approx(1.0137e-3, rel=1e-9)
-    assert found.full_slip.mu_app == pytest.approx(0.25, rel=1e-12)
-    assert (found.charged.ridges_in_contact, found.full_slip.ridges_in_contact) == (15, 14)
-
-
 def nearest(key: str, value: float, friction: float) -> str:
     """Return the nearest range of a key among the regions over screens that have the friction coefficient."""
     regions = [r.ranges for r in REGIONS[1:] if r.ranges["friction"][0] <= friction <= r.ranges["friction"][1]]
@@ -49,9 +40,9 @@ def nearest(key: str, value: float, friction: float) -> str:
 
 def test_other_screen_than_the_runs_is_said():
     found = cylinders.solve(scene(friction=0.3, electric={"d_i": 2e-5}))
-    assert any(nearest("electric.d_i", 2e-5, 0.3) in text for text in found.cautions)
+    assert any(nearest("electric.d_i", 2e-5, 0.3) in text.text for text in found.cautions)
     own = scene().replace(roughness=Held(), friction=Derjaguin(0.3, 1e3))
-    (text,) = cylinders.solve(own).cautions
+    (text,) = map(str, cylinders.solve(own).cautions)
     for table in ("friction", "roughness"):
         assert f"{table} is of another law, and it is known for that of the default scene" in text
 
@@ -69,20 +60,6 @@ def test_scene_it_does_not_know_is_refused(data, sentence):
         cylinders.solve(scene(**data))
 
 
-def test_errors_of_a_run_stand_beside_its_values(default):
-    """With what ± is; a state that comes without an error has its value alone."""
-    slip = replace(default.full_slip, contact_length=1.6e-3, error=Errors.of({"contact_length": 2e-5}))
-    charged = replace(default.charged, contact_length=1.7e-3, error=Errors())
-    answer = replace(default, model="full", record={}, charged=charged, full_slip=slip)
-    assert answer.full_slip.error.known() == {"contact_length": 2e-5}
-    lines = compare.table([answer]).splitlines()
-    assert next(line for line in lines if line.startswith("full slip: contact length")).endswith("1.600 ± 0.020")
-    assert next(line for line in lines if line.startswith("charged normal contact: contact length")).endswith(
-        "  1.7000"
-    )
-    assert any(line.startswith("±: error by mesh (full); ") for line in lines)
-
-
 def test_closed_form_has_the_error_that_it_is_known_to(default):
     """Beside full runs, and none of a mesh, which it has not."""
     known = default.record["model_error"]
@@ -91,3 +68,42 @@ def test_closed_form_has_the_error_that_it_is_known_to(default):
         assert {key: found[key] for key in known[name]} == pytest.approx(known[name], rel=1e-12)
     assert default.parts() == ("closed form",)
     assert any("no discretisation error" in note for note in default.notes)
+
+
+# -- the closed form of fingers similar to the default one, by dimensional analysis ----------------------------------
+SCALE, STIFFER = 0.9, 1.3
+SHAPE = {name: SCALE * value for name, value in dict(Fingertip()).items() if isinstance(value, float)}
+SKIN = {layer: {"shear_modulus": STIFFER * modulus} for layer, modulus in SOFT.items()}
+
+
+def test_contact_is_scaled():
+    """Its length by the lengths, at a force that is scaled by both; the bone's way likewise."""
+    scene = fp.Scene(geometry=SHAPE, materials=SKIN, f_ext=60.0, voltage=0.0)
+    assert similar(scene) == Similar(pytest.approx(SCALE), pytest.approx(STIFFER))
+    default = fp.Scene(f_ext=60.0 / (SCALE * STIFFER), voltage=0.0)
+    mine, known = (cylinders.solve(each).full_slip for each in (scene, default))
+    assert mine.contact_length == pytest.approx(SCALE * known.contact_length, rel=1e-12)
+    assert mine.ridges_in_contact == known.ridges_in_contact and mine.mu_app == pytest.approx(0.25, rel=1e-12)
+    way = cylinders.indentation(60.0, "charged", similar(scene))
+    assert way == pytest.approx(SCALE * cylinders.indentation(default.f_ext, "charged"), rel=1e-12)
+    trace = cylinders.over_forces(scene, [60.0], "full_slip")[0]
+    assert trace.contact_length == pytest.approx(mine.contact_length, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("changes", "table"),
+    [
+        ({"geometry": SHAPE | {"width": 0.0185}}, "geometry"),
+        ({"geometry": SHAPE | {"ridge_count": 53}}, "geometry"),
+        ({"materials": SKIN | {"dermis": {"shear_modulus": 2.55e3}}}, "materials"),
+        ({"materials": SKIN | {"dermis": {"shear_modulus": STIFFER * 2.55e3, "alpha": 5.0}}}, "materials"),
+        ({"materials": SKIN | {"dermis": {"law": "NeoHooke", "shear_modulus": 3e3}}}, "materials"),
+        ({"finger": "callused"}, "geometry"),
+    ],
+)
+def test_other_fingers_are_refused(changes, table):
+    scene = fp.Scene(**changes)
+    assert similar(scene) == table
+    whose = f" of finger '{changes['finger']}'" if "finger" in changes else ""
+    with pytest.raises(fp.SceneError, match=f"^{table}{whose} is not that of the default finger or of one similar"):
+        cylinders.solve(scene)

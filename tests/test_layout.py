@@ -67,21 +67,6 @@ def test_round_trip(space, layout):
     assert_allclose(back, f.x.array, rtol=0, atol=1e-15)
 
 
-def test_rim_moves_as_one(space, layout):
-    """A unit of the rigid unknowns moves all nodes of the rim, ghosts included, and no other."""
-    x = layout.create_vector()
-    for component in (0, 1):
-        x.set(0.0)
-        if layout.owns_rigid:
-            x.array_w[-2 + component] = 1.0
-        nodal = np.empty(len(layout.rows))
-        layout.to_nodes(x, nodal)
-        on_top = np.isclose(space.tabulate_dof_coordinates()[:, 1], 1)
-        expected = np.zeros((len(on_top), 2))
-        expected[on_top, component] = 1.0
-        np.testing.assert_array_equal(nodal.reshape(-1, 2), expected)
-
-
 @pytest.mark.parametrize("transposed", [False, True])
 def test_matrix_is_the_reduced_one(space, layout, transposed):
     """The matrix times the unknowns of u is T^T times the action on u. Tolerance: roundoff of some thirty terms.
@@ -95,18 +80,3 @@ def test_matrix_is_the_reduced_one(space, layout, transposed):
     layout.add_to_unknowns(nodal, expected)
     (A.multTranspose if transposed else A.mult)(unknowns(layout, f), product)
     assert_allclose(product.array_r, expected.array_r, rtol=0, atol=1e-13 * expected.norm(3))
-
-
-def test_assembling_again_gives_the_same(space, layout):
-    """Zeroed and filled again, with rows taken out in between, as in every iteration of a solve."""
-    A = matrix(layout, space)
-    x, once, twice = layout.create_vector(), layout.create_vector(), layout.create_vector()
-    x.set(1.0)
-    x.array_w[:] += np.arange(len(x.array_r))
-    A.mult(x, once)
-    A.zeroRows(layout.rigid_rows if layout.owns_rigid else np.empty(0, layout.rigid_rows.dtype), diag=7.0)
-    A.zeroEntries()
-    fem.petsc.assemble_matrix(A, fem.form(bilinear(space)))
-    A.assemble()
-    A.mult(x, twice)
-    np.testing.assert_allclose(twice.array_r, once.array_r, rtol=1e-14, atol=1e-14 * once.norm(3))

@@ -3,7 +3,6 @@
 import math
 import tomllib
 from html import escape
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +10,6 @@ import pytest
 from mpi4py import MPI
 
 from fingerpad.model.options import FingerModel, by_rule, plan
-from fingerpad.model.schedule import targets
 from fingerpad.model.simulation import Simulation
 from fingerpad.report.run_page import page
 from fingerpad.results.over_time import NOTE, without_parts_of_jumps
@@ -184,27 +182,6 @@ def test_parts_of_a_jump_are_no_extremes():
     assert least["f_electrostatic"].min == min(state.f_electrostatic for state in own)
 
 
-def test_course_of_a_square():
-    """Its jumps are cut into steps, its plateaus are not; what is done is counted in time, not by the pieces."""
-    load = Load(name="wave", duration=2 / 60, voltage=WAVE | {"waveform": "square"})
-    pieces = targets(load, 0.0, SCALE)
-    jumps = [after for before, after in pairwise(pieces) if before.voltage != after.voltage]
-    assert len(jumps) == 3 and not any(target.continues or target.duration for target in jumps)
-    assert sum(target.continues for target in pieces) == len(pieces) - 1 - len(jumps)
-    assert sum(target.duration for target in pieces) == pytest.approx(2 / 60, rel=1e-12)
-    asked, done = scene(PRESS, load.model_dump(exclude_none=True)), dict[int, float]()
-    made = Simulation(
-        FingerModel(by_rule(asked), plan(asked)),
-        MPI.COMM_WORLD,
-        lambda step, part: done.update({step.state.step: 2 * part - 1}),
-    )
-    made.run()
-    wave = [state for state in made.states if state.load == "wave"]
-    found = [done[state.step] for state in wave]
-    assert found == sorted(found) and found[-1] == 1.0
-    assert found == pytest.approx([state.time * 60 / 2 for state in wave], abs=1e-12)
-
-
 def test_bone_at_a_height():
     """Under a voltage over time it stays there; what it presses with falls where the attraction rises."""
     lower = {"name": "lower", "bone_height": -30e-6}
@@ -250,28 +227,6 @@ def test_results_of_a_run(tmp_path):
     assert f"</sub> from {mu.min:.4f} to {mu.max:.4f} <" in shown and "In the load wave the friction force" in shown
     assert "in the load wave, over time" in shown
     assert "Loads over time" in shown and "sine of 80 V about 20 V at 60 Hz" in shown and escape(NOTE) in shown
-
-
-@pytest.mark.long
-def test_mean_from_steps_that_are_too_long_is_told(tmp_path):
-    """Friction turns round, and the finger leaves the screen, within less than a step: the remark names both loads.
-
-    With steps a tenth as long the mean of the way back is 7 % off that of the default steps, and is not remarked on.
-    """
-    loads = [
-        {"name": "press", "f_ext": 0.4, "voltage": 30.0},
-        {"name": "slide", "bone_x": 5e-4, "until_full_slip": True},
-        {"name": "back", "bone_x_by": -5e-4, "speed": 1e-3},
-        {"name": "lift", "bone_height": 5e-5, "duration": 1.0},
-    ]
-    long, short = (full.run(scene(*loads, numerics={"step_scale": part}), RunContext()) for part in (1, 0.1))
-    told = [note.split(" the mean ")[0] for note in long.cautions]
-    assert told == ["In the load back", "In the load lift"]
-    assert not any("In the load back" in text for text in short.cautions)
-    means = [result.loads[2].over_time.mean["f_t"] for result in (long, short)]
-    assert means[0] == pytest.approx(means[1], rel=0.1) and means[0] != pytest.approx(means[1], rel=0.05)
-    assert abs(means[0] - means[1]) < long.loads[2].over_time.mean_change["f_t"]
-    assert long.loads[2].extremes["f_t"].max == pytest.approx(long.loads[1].end.f_t, rel=1e-9), "where it began"
 
 
 def test_first_touch_has_no_estimated_errors():

@@ -59,12 +59,6 @@ def rim_of(places) -> list[tuple[int, int]]:
     return list(itertools.pairwise(top))
 
 
-def test_block_by_hand_is_a_body(tmp_path):
-    places, cells = block()
-    made = load(MPI.COMM_WORLD, geometry.file(by_hand(tmp_path / "mine.msh", places, cells, rim_of(places))))
-    assert made.mesh.topology.index_map(2).size_global == 16
-
-
 @pytest.mark.parametrize(
     ("case", "message"),
     [

@@ -49,17 +49,6 @@ def test_what_cannot_matter_is_left_out_with_its_reason(data, part, reason):
     assert reason in [omission.reason for omission in needed.omitted]
 
 
-@pytest.mark.parametrize(
-    "data",
-    [{"history": [PRESS, {"name": "on", "voltage": 10.0}, {"name": "off", "voltage": 0.0}]}, {"friction": 1e-6}, {}],
-)
-def test_what_matters_for_a_while_stays(data):
-    """A voltage that is switched off again, a little friction."""
-    needed = plan(from_data({"friction": 0.2} | data))
-    assert needed.voltage == any(load.voltage for load in from_data(data).loads())
-    assert needed.friction
-
-
 # -- forms -------------------------------------------------------------------------------------------------
 @pytest.fixture(scope="module")
 def body():

@@ -1,4 +1,4 @@
-"""Newton's method: which steps it takes, shortens and refuses, on any number of ranks."""
+"""Newton's method: which steps it takes, shortens and refuses, and the layer at the screen; on any ranks."""
 
 import numpy as np
 import pytest
@@ -108,25 +108,6 @@ def test_steady_slip_is_solved_at_once(body):
     assert solver.counts.newton - before == 1
 
 
-def test_shift_is_no_part_of_roundoff(body):
-    """Else a shift that has grown makes any residual that stalls pass for roundoff; the shift itself stays."""
-    solver = make(body, MU_F, eps_t=5e10)
-    walk(solver, [Control(0.0, -20e-6)])
-    run, eta = solver.iteration, solver.problem.eta
-    tangent = run.tangent
-
-    def roundoff(shift):
-        eta.value, tangent.stale, run._shifted = shift, True, shift > 0
-        tangent.update(None, solver.x, tangent.relative, tangent.matrix)
-        return run._roundoff(0.0), tangent.matrix.norm()
-
-    (plain, size), (shifted, larger) = roundoff(0.0), roundoff(1e16)
-    assert larger > 100 * size
-    assert shifted == pytest.approx(plain, rel=1e-9) and plain > 0
-    assert float(eta.value) == 1e16
-    assert tangent.matrix.norm() == larger
-
-
 # -- Anderson acceleration with a kept factorisation -----------------------------------------------------------------
 SIZE, RANK = 60, 3
 ROWS = np.array_split(np.arange(SIZE), MPI.COMM_WORLD.size)[MPI.COMM_WORLD.rank]
@@ -164,3 +145,73 @@ def test_change_of_low_rank_is_learnt(linear):
     plain, accelerated = norms(linear, False), norms(linear, True)
     assert accelerated[RANK + 2] < 1e-6 * accelerated[0]
     assert plain[RANK + 2] > 1e-3 * plain[0]
+
+
+# -- the layer of elements next to the screen, brought into balance by itself, on any number of ranks ----------------
+PRESS = [Control(0.0, -10e-6 * k) for k in (1, 2, 3, 4)]
+SLIDE = [Control(20e-6 * k, -40e-6) for k in (1, 2, 3)]
+
+
+@pytest.fixture
+def pressed(body):
+    """A solver in equilibrium with a layer, its layer, and an iterate whose layer is out of balance by 0.1 um."""
+    solver = make(body, MU_F, eps_t=5e10)
+    walk(solver, PRESS)
+    layer, x = solver.iteration._layer, solver.x.copy()
+    rng = np.random.default_rng(MPI.COMM_WORLD.rank)
+    x.array_w[layer._rows] += 1e-7 * rng.uniform(-1, 1, len(layer._rows))
+    return solver, layer, x
+
+
+def total(part) -> float:
+    """Return the norm of a vector of which each rank has a part."""
+    return float(np.sqrt(MPI.COMM_WORLD.allreduce(float(part @ part))))
+
+
+def test_forms_of_the_layer_are_the_rows_of_the_whole(pressed):
+    """Residual and tangent, in the layer's rows and columns. Tolerance: roundoff of the sums, of the largest entry."""
+    solver, layer, x = pressed
+    equations, tangent, rows = solver.equations, solver.iteration.tangent, layer._rows
+    whole, part = x.duplicate(), x.duplicate()
+    equations.residual(x, part, layer._residual)
+    layer._iterate(layer._ksp, x.copy(), part, np.inf)  # assembles the tangent at the iterate it starts from
+    equations.residual(x, part, layer._residual)
+    equations.residual(x, whole)
+    assert total((part.array_r - whole.array_r)[rows]) < 1e-12 * total(whole.array_r[rows])
+    tangent.stale = True
+    tangent.update(None, x, tangent.relative, tangent.matrix)
+    direction, product = tangent.matrix.createVecs()
+    small, found = layer._K.createVecs()
+    some = np.random.default_rng(MPI.COMM_WORLD.rank).uniform(-1, 1, len(rows))
+    direction.array_w[rows], small.array_w[:] = some, some
+    tangent.matrix.mult(direction, product)
+    layer._K.mult(small, found)
+    assert total(found.array_r - product.array_r[rows]) < 1e-12 * total(product.array_r[rows])
+
+
+def test_balance_moves_the_layer_alone(pressed):
+    """Its residual falls to what was asked for; everything else stays where it was, to the last bit."""
+    solver, layer, x = pressed
+    before, f = x.array_r.copy(), x.duplicate()
+    solver.equations.residual(x, f)
+    first = total(f.array_r[layer._rows])
+    layer.balance(x, f, 1e-9 * first, np.inf)
+    solver.equations.residual(x, f)
+    assert total(f.array_r[layer._rows]) <= 1e-9 * first
+    rest = np.delete(x.array_r - before, layer._rows)
+    assert not rest.any()
+    assert total(x.array_r - before) > 0
+
+
+@pytest.mark.slow
+def test_equilibrium_is_the_same_without_the_layer(body):
+    """With it fewer factorisations lead there. Tolerance: the solve's, 1e-9 N/m over the tangent's stiffness."""
+    states, factorisations = [], []
+    for with_layer in (True, False):
+        solver = make(body, MU_F, eps_t=5e10)
+        solver.iteration._layer = solver.iteration._layer if with_layer else None
+        walk(solver, PRESS + SLIDE)
+        states.append(solver.x.array_r.copy())
+        factorisations.append(solver.counts.factorisations)
+    assert total(states[1] - states[0]) < 1e-8 * total(states[0])
+    assert factorisations[0] < 0.8 * factorisations[1]

@@ -16,7 +16,6 @@ from fingerpad.runs.branches import Branches
 from fingerpad.scene import Load, SceneError, from_data
 from fingerpad.slices import traces
 from fingerpad.slices.total import BeyondTrace
-from geometry.profiles import GeometryError
 from tests.runs import path_of, tables_alone
 from tests.small_finger import NINE, small
 from variational.solvers.continuation import StepFailed
@@ -106,7 +105,7 @@ def test_more_ridges_are_added_where_they_must_touch():
     ("of", "method", "words"),
     [
         (Simulation, "_accepted", "light press"),
-        (Simulation, "slip_to", "trace of full slip"),
+        pytest.param(Simulation, "slip_to", "trace of full slip", marks=pytest.mark.long),
         (StateSolver, "re_equilibrate", "correction of the traces"),
     ],
 )
@@ -140,12 +139,6 @@ def test_force_that_was_interrupted_goes_on(tmp_path, of, method, words):
         fp.run(scene().replace(force=1.1 * FORCE), out=out)
 
 
-def test_profile_that_does_not_fit_is_refused():
-    short = scene().replace(slices={"radius": 6e-3, "length": 1e-3})
-    with pytest.raises(SceneError, match="the finger ends at z"):
-        fp.run(short)
-
-
 def test_accuracy_is_refused():
     with pytest.raises(SceneError, match="accuracy is given and force is 0.002 N; the traces"):
         fp.run(scene(accuracy={"mu_app": 0.05}))
@@ -156,7 +149,6 @@ def test_accuracy_is_refused():
     [
         (newtons, "at_force", BeyondTrace("of a test"), "the correction of the traces failed: of a test; give f_ext"),
         (Branches, "follow", StepFailed("no equilibrium"), "the light press failed: no equilibrium; give f_ext"),
-        (Branches, "follow", GeometryError("too large"), "the finger cannot be meshed: too large"),
     ],
 )
 def test_lost_trace_is_refused_with_its_reason(monkeypatch, of, name, error, words):
@@ -169,6 +161,7 @@ def test_lost_trace_is_refused_with_its_reason(monkeypatch, of, name, error, wor
 
 
 @pytest.mark.mpi
+@pytest.mark.skipif(MPI.COMM_WORLD.size == 1, reason="one rank has no other to agree with")
 def test_numbers_are_the_same_on_more_ranks():
     """Tolerance: Newton's on other sums, and the air gaps' of 1e-6."""
     one, all_ranks = (fp.run(from_data(COARSE), comm=comm) for comm in (MPI.COMM_SELF, MPI.COMM_WORLD))

@@ -1,10 +1,10 @@
-"""Cell means and receptor sites against closed forms under homogeneous deformation."""
+"""Cell means, receptor sites and lines of a body against closed forms."""
 
 import dolfinx
 import numpy as np
 import pytest
 import ufl
-from dolfinx import fem
+from matplotlib.tri import Triangulation
 from mpi4py import MPI
 
 from variational import kinematics
@@ -13,8 +13,9 @@ from variational.contact.penalty import Penalty
 from variational.materials import ogden, saint_venant
 from variational.materials.ogden import Ogden
 from variational.materials.saint_venant import SaintVenant
-from variational.output import Cellwise, Lines, Receptors, sed_per_cell
+from variational.output import Cellwise, Lines, Receptors
 from variational.problem import Problem
+from variational.snapshot import loops, outline
 from variational.surface import Surface
 
 pytestmark = pytest.mark.mpi
@@ -92,20 +93,6 @@ def test_cauchy_stress(problem, F):
         assert error < 5e-9 * np.abs(expected).max()
 
 
-def test_mean_density_of_bending(problem):
-    """Cell means integrate to the body's energy where strain varies, exactly for degree 2 of linear strain.
-
-    Tolerance: strains of 1e-3 leave twelve digits of an energy density that is a difference of ones, some 1e-7 J/m.
-    """
-    problem.w.interpolate(lambda x: np.stack([0 * x[0], x[0] ** 2]))
-    cells, sed = sed_per_cell(problem)
-    area = 1e-6 / 72
-    body = problem.mesh.comm.allreduce(float(sed.sum()) * area)
-    dx = ufl.Measure("dx", problem.mesh, subdomain_data=problem.cell_tags, metadata={"quadrature_degree": 2})
-    forms = [fem.assemble_scalar(fem.form(density * dx(tags))) for tags, density in problem.densities.items()]
-    assert body == pytest.approx(problem.mesh.comm.allreduce(sum(forms)), rel=1e-10, abs=0)
-
-
 def test_gathered_mesh(problem):
     """Rank 0 has every vertex and cell once, with its displacement, density and tag; the others have nothing.
 
@@ -156,3 +143,33 @@ def test_receptor_outside(problem):
         Receptors(problem, np.array([[0.5e-3, 0.5e-3], [2e-3, 0.5e-3]]))
     with pytest.raises(ValueError, match="no receptor site"):
         Receptors(problem, np.zeros((0, 2)))
+
+
+# -- lines of a body, beside closed forms: loops and areas -----------------------------------------------------------
+def square(n: int = 6) -> tuple[np.ndarray, np.ndarray]:
+    """Return vertices and triangles, either way round, of a square of two units with a hole of a third of its side."""
+    x, y = (a.ravel() for a in np.meshgrid(np.linspace(-1, 1, n + 1), np.linspace(-1, 1, n + 1)))
+    triangles = Triangulation(x, y).triangles.astype(np.int64)
+    centre = np.abs(np.column_stack([x, y])[triangles].mean(axis=1)).max(axis=1)
+    triangles = triangles[centre > 1 / 3]
+    triangles[::2] = triangles[::2, ::-1]
+    return np.column_stack([x, y]), triangles
+
+
+def area(points: np.ndarray) -> float:
+    """Return the area inside a polygon, positive where it is counterclockwise."""
+    x, y = points.T
+    return float(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2
+
+
+def test_loops_go_around_each_part():
+    """A part is on their left: its outer loop is counterclockwise and that of a hole is clockwise."""
+    x, triangles = square()
+    tag = np.where(x[triangles].mean(axis=1)[:, 1] > 0, 7, 5).astype(np.int32)
+    ends, cells, edge = outline(x, triangles, tag)
+    apart = triangles[cells[:, 0]] != triangles[cells[:, 0], edge][:, None]
+    assert (np.sort(triangles[cells[:, 0]][apart].reshape(-1, 2)) == np.sort(ends)).all()
+    lines = np.stack([ends[:, 0], ends[:, 0], ends[:, 1]], axis=1)
+    areas = {part: sorted(area(x[loop[:, 0]]) for loop in loops(lines, cells, tag, part)) for part in (5, 7, 0)}
+    assert areas[5] == pytest.approx([2 - 2 / 9]) == areas[7]
+    assert areas[0] == pytest.approx([-4, 4 / 9])

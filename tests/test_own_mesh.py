@@ -1,6 +1,5 @@
 """A scene on the mesh of a gmsh file: the same numbers as on its own mesh, what is left out, and what is refused."""
 
-import json
 import re
 from pathlib import Path
 
@@ -10,8 +9,7 @@ from mpi4py import MPI
 
 import fingerpad as fp
 from fingerpad.cli import main
-from fingerpad.results.folder import full_scene
-from fingerpad.scene import as_kept, from_data
+from fingerpad.scene import from_data
 from geometry import fingertip
 from geometry.parameters import Fingertip, MeshSize
 from tests.measures import rows_of
@@ -77,7 +75,6 @@ def test_same_numbers_as_on_its_own_mesh(place):
     ("given", "words"),
     [
         ({"geometry": {"file": "gone.msh"}}, "geometry.file is 'gone.msh', and there is no such file"),
-        ({"geometry": {"file": 5}}, "geometry.file is 5; it must be text"),
         ({"geometry": {"file": "m.msh", "width": 0.02}}, "geometry.width is given and geometry.file too, whose mesh"),
         ({"geometry": {"file": "m.msh"}, "mesh": {"contact": 1e-5}}, "mesh.contact is given and geometry.file too"),
         ({"geometry": {"file": "m.msh"}, "accuracy": {"mu_app": 0.01}}, "accuracy is given and geometry.file too"),
@@ -91,38 +88,9 @@ def test_file_that_cannot_be_is_refused(given, words, tmp_path, monkeypatch):
     assert "\n" not in str(refused.value)
 
 
-def test_scene_is_kept_with_its_mesh(tmp_path):
-    """For processes and for going on; a mesh that was changed since is refused."""
-    file = write_text(tmp_path / "one.msh", "one")
-    given = from_data({"geometry": {"file": file}})
-    kept = json.loads(json.dumps(given.parameters()))
-    assert fp.Scene(**kept) == given
-    (tmp_path / "scene.json").write_text(json.dumps(kept), encoding="utf-8")
-    assert full_scene(tmp_path).parameters() == given.parameters(), "of run --resume"
-    write_text(tmp_path / "one.msh", "other")
-    with pytest.raises(fp.SceneError, match="which was changed since the scene was kept"):
-        fp.Scene(**kept)
-    assert as_kept(kept).parameters() == kept, "results are read without the mesh"
-
-
 def write_text(path: Path, text: str) -> str:
     path.write_text(text, encoding="utf-8")
     return str(path)
-
-
-def test_check_reads_and_draws_the_file(place, tmp_path, capsys):
-    """Its triangles, and what is wrong with it; no mesh is written of it."""
-    write(place)
-    words = ["--set", f"geometry.file={place}", "--set", "voltage=0", "--out", str(tmp_path / "out")]
-    assert main(["check", *words]) == 0
-    said = capsys.readouterr().out
-    assert re.search(r"\d+ triangles of element P2", said) and "1 ridge can touch" in said
-    assert (tmp_path / "out" / "mesh.png").stat().st_size > 10_000
-    assert main(["check", *words, "--mesh", str(tmp_path / "other.msh")]) == 2
-    assert "geometry.file is given, which is a mesh already" in capsys.readouterr().err
-    place.write_text("no mesh", encoding="utf-8")
-    assert main(["check", *words]) == 2
-    assert "is no mesh of gmsh" in capsys.readouterr().err
 
 
 @pytest.mark.mpi

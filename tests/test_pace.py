@@ -1,21 +1,13 @@
 """How far a run is and what time is left of it, in a terminal, in a file, and in quiet."""
 
-import os
-import subprocess
-import sys
-from dataclasses import fields
-from pathlib import Path
-
 import pytest
 from mpi4py import MPI
 
 from fingerpad import launcher
 from fingerpad.cli import main
 from fingerpad.results import terminal
-from fingerpad.results.terminal import Console, Pace, in_words
+from fingerpad.results.terminal import Console, Pace
 from fingerpad.runs.batch import times_left
-from tests.measures import contact_state
-from variational.state import StepRecord
 
 PRESS = '[[history]]\nname = "press"\nbone_height = -50e-6\n\n[output]\nerrors = false\nreceptors = false\n'
 MESH = "\n[mesh]\ncontact = 40e-6\nreceptor = 80e-6\ninterface = 150e-6\ngrowth = 0.8\n"
@@ -51,20 +43,6 @@ def test_time_left_is_not_known_before_a_waveform_has_its_pace():
     assert unit == "s" and float(low) < 35.2 < float(high) < 2 * 35.2
 
 
-@pytest.mark.parametrize(
-    ("low", "high", "words"),
-    [
-        (9e-10, 1.4e-9, "less than 1 s"),
-        (0.0, 0.0, "less than 1 s"),
-        (1.5, 6.0, "1.5 to 6 s"),
-        (40.0, 160.0, "0.67 to 2.7 minutes"),
-        (3600.0, 14400.0, "1 to 4 hours"),
-    ],
-)
-def test_range_is_in_the_unit_of_the_longer_time(low, high, words):
-    assert in_words(low, high) == words
-
-
 def test_time_left_of_a_sweep_is_by_its_runs():
     """Six runs left, two at a time: from two rounds and a half of the shortest to three of the longest."""
     assert times_left([10.0, 30.0], 6, 2) == (25.0, 90.0)
@@ -72,26 +50,6 @@ def test_time_left_of_a_sweep_is_by_its_runs():
 
 
 # -- console -------------------------------------------------------------------------------------------
-def test_phase_is_a_line_in_a_file(capsys):
-    """With the time left where it is known; capsys is no terminal."""
-    console = Console(MPI.COMM_SELF)
-    console.phase("meshing")
-    console.phase("estimating", 0)
-    console.phase("estimated", 1.0)
-    console.close()
-    assert capsys.readouterr().out == "meshing\nestimating\nestimated; time left: less than 1 s\n"
-
-
-def test_step_shows_the_time_left_of_the_path(capsys, monkeypatch):
-    monkeypatch.setattr(Pace, "left", lambda pace: "20 to 60 s")
-    console = Console(MPI.COMM_SELF)
-    console.expect(1)
-    work = {field.name: 0 for field in fields(StepRecord)}
-    zeros = {"bone_x": -0.0, "bone_height": -1e-12, "f_t": -1e-17, "mu_app": -1e-17}  # have no sign
-    console.step(contact_state(**zeros, load="press", record=StepRecord(**work)), 0.5)
-    console.close()
-    out = capsys.readouterr().out
-    assert out.endswith("  20 to 60 s\n") and "-0" not in out
 
 
 @pytest.mark.slow
@@ -104,7 +62,6 @@ def test_run_in_quiet_prints_the_result_alone(tmp_path, write, capsys):
 
 
 # -- whether a person watches the output -----------------------------------------------------------------------------
-ROOT = Path(__file__).resolve().parents[1]
 
 
 class Screen:
@@ -123,32 +80,12 @@ def bare(monkeypatch):
     return monkeypatch
 
 
-@pytest.mark.parametrize(("name", "value"), [("NO_COLOR", "1"), ("TERM", "dumb"), ("PMIX_RANK", "1")])
-def test_nobody_watches(bare, name, value):
-    """Nor the ranks beside rank 0, whose output goes to the same terminal."""
-    bare.setattr("os.readlink", lambda path: "/dev/pts/3")
-    bare.setenv(name, value)
-    assert not terminal.watched(Screen(True))
-
-
 @pytest.mark.parametrize(("output", "watches"), [("/dev/pts/3", True), ("/tmp/log", False), ("pipe:[17]", False)])
 def test_the_launchers_output_counts(bare, output, watches):
     """mpirun prints through a terminal of its own whatever its output goes to."""
     bare.setenv("OMPI_COMM_WORLD_RANK", "0")
     bare.setattr("os.readlink", lambda path: output)
     assert terminal.watched(Screen(True)) == watches
-
-
-def test_closed_output_costs_nothing(tmp_path):
-    """After ``>&-``: the command does its work, and no file that it opens takes the number of the output."""
-    code = "import os, sys; from fingerpad.__main__ import main; sys.argv[1:] = ['params', 'f_ext']; code = main()\n"
-    code += f"open({str(tmp_path / 'found')!r}, 'w').write(f'{{code}} {{os.readlink(\"/proc/self/fd/1\")}}')"
-    done = subprocess.run(
-        [sys.executable, "-P", "-c", code],
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-        preexec_fn=lambda: [os.close(number) for number in range(3)],
-    )
-    assert (done.returncode, (tmp_path / "found").read_text()) == (0, "0 /dev/null")
 
 
 @pytest.mark.parametrize("error", [BrokenPipeError(), SystemExit(1)])

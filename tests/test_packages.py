@@ -93,16 +93,6 @@ def test_wheel_holds_the_library(wheel):
 
 
 @pytest.mark.slow
-def test_wheel_holds_licence_and_command(wheel, project):
-    """The licence's two texts, its short name, and the command."""
-    info = f"fingerpad-{project['project']['version']}.dist-info"
-    for name in ("LICENSE", "COPYING"):
-        assert wheel.read(f"{info}/licenses/{name}") == (ROOT / name).read_bytes()
-    assert f"License-Expression: {project['project']['license']}\n" in wheel.read(f"{info}/METADATA").decode()
-    assert "fingerpad = fingerpad.__main__:main" in wheel.read(f"{info}/entry_points.txt").decode()
-
-
-@pytest.mark.slow
 def test_wheel_runs(wheel, tmp_path):
     """By itself, away from the checkout: nothing that it needs is left out of it."""
     wheel.extractall(tmp_path)

@@ -188,18 +188,6 @@ def near(model: FlatRidge, state: State) -> bool:
     return state.voltage > (on if state.load == "charge" else off)
 
 
-def test_folds_of_the_scalar_model():
-    """The jump off is below the 163.6 V of Eq. 9's threshold; at 200 V the fold off the screen is at 107 Pa.
-
-    Tolerance: half the last digit; the fold near the screen does not know of the floor, but for the search's end.
-    """
-    (off, held), (smooth_off, on) = FlatRidge(1e3).folds, FlatRidge(1.0).folds
-    assert off == pytest.approx(162.57, abs=0.005)
-    assert smooth_off == pytest.approx(off, rel=1e-9)
-    assert held == pytest.approx(179.73, abs=0.005)
-    assert on == pytest.approx(270.36, abs=0.005)
-
-
 def test_flat_ridge_is_on_its_branch(charged):
     """Every state is the scalar model's to 1e-6, the coupling's tolerance, before and after the jumps."""
     model, path, _ = charged

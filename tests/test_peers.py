@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from benchmarks.peers import compared, equal, ours, plain
-from benchmarks.peers.compared import CURVED, OURS, half_width
-from benchmarks.peers.exchange import Answer, Case, Load, Ridge, State
+from benchmarks.peers import equal, ours, plain
+from benchmarks.peers.exchange import Case, Load, Ridge
 from geometry.bodies import ridge as one_ridge
 from geometry.mesh import load
 
@@ -23,13 +22,6 @@ def ridge(body) -> Ridge:
     return ours.for_peers(body)
 
 
-@pytest.fixture(scope="module")
-def answer(body, ridge) -> Answer:
-    pressed, moved = Load(0.0, -0.01, "pressed without friction"), Load(0.02, -0.01, "moved 5 µm")
-    case = Case(0.25, (Load(0.0, -0.005), pressed, moved))
-    return ours.solve(case, body, ridge.points[ridge.skin].reshape(-1, 2))
-
-
 def test_triangles(ridge):
     """Counter-clockwise, each middle half-way along its edge (roundoff), and together the ridge.
 
@@ -42,25 +34,6 @@ def test_triangles(ridge):
     area = (a * d - b * c) / 2
     assert area.min() > 0
     assert area.sum() == pytest.approx(WIDTH * (0.6 - 0.05), rel=2e-3)
-
-
-def test_screen_that_moves_instead(answer):
-    """After 20 um under a penetration of 10 um all slips: friction on the skin is mu_f F_n, against the motion.
-
-    Tolerance: the imbalance at which solves end, 1e-12 N/mm, on some 30 nodes.
-    """
-    _, moved = answer.states
-    assert moved.f_t == pytest.approx(-0.25 * moved.f_n, abs=1e-10)
-
-
-def test_half_width_of_a_parabola():
-    """An edge from (0, -1) to (2, 3) with its middle at (1, 0.25): y = -1 + x/2 + 3/4 x^2, below until its root."""
-    points = np.array([[0.0, 0.0], [2.0, 0.0], [1.0, 0.0]])
-    mesh = Ridge(points, np.zeros((0, 6), int), np.array([[0, 1, 2]]), np.zeros(0, int), np.zeros(0, int))
-    state = State("", 0, 0, [[0.0, -1.0], [0.0, 3.0], [0.0, 0.25]], 0.0)
-    x = np.linspace(0, (-0.5 + np.sqrt(0.25 + 3)) / 1.5, 200001)
-    exact = np.hypot(np.diff(x), np.diff(-1 + x / 2 + 0.75 * x**2)).sum() / 2
-    assert half_width(mesh, state) == pytest.approx(exact, rel=1e-5)  # the error of six Gauss points
 
 
 # -- at equal error --------------------------------------------------------------------------------------------------
@@ -86,16 +59,3 @@ def test_states_solved_again_are_those_of_the_script():
         for value, there, within in zip(values, expected, (2e-3, 5e-3, 2e-2), strict=True):
             assert value == pytest.approx(there, rel=within)
     assert found["factorisations"] + found["path"]["factorisations"] < other["factorisations"] / 2
-
-
-def test_cheapest_row_is_nowhere_less_accurate():
-    """The script's of least time whose errors, and those of its finer meshes, are no larger; None without one."""
-    mine = {"program": OURS, "size": 10.0, "seconds": 1.0, "errors": [1e-3, 1e-3, 1e-3]}
-    lucky, coarse, fine, finest = (
-        {"program": CURVED, "size": size, "seconds": 10 / size, "errors": errors}
-        for size, errors in ((8.0, [1e-3] * 3), (5.0, [1e-3, 2e-3, 1e-4]), (2.0, [1e-3, 1e-3, 1e-4]), (1.0, [1e-4] * 3))
-    )
-    found = compared.words([lucky, mine, finest, coarse, fine])
-    assert found["pairs"] == [(mine, fine)] and found["reached"] == [5.0]
-    assert found["lucky"] == [10 / 8] and found["asked"] == [mine, lucky]
-    assert compared.words([mine, coarse])["reached"] == []

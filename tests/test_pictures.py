@@ -11,7 +11,6 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import LogNorm
 from matplotlib.image import imread
 from matplotlib.tri import Triangulation
-from PIL import Image
 
 import fingerpad as fp
 from fingerpad.results.pictures import style
@@ -111,16 +110,6 @@ def test_finger(tmp_path, snapshot, sites):
     assert "bone" in [text.get_text() for text in whole.texts]
 
 
-def test_finger_views_the_contact(tmp_path, snapshot):
-    """The contact, 1 mm on either side, up to 1.3 mm, with energies in kPa on a logarithmic scale."""
-    near = finger(tmp_path / "finger.png", snapshot, None, TITLE).axes[1]
-    assert near.get_xlim() == pytest.approx((-2.125, 2.125))  # the middle of an edge is 0.3 µm above the screen
-    assert near.get_ylim()[1] == pytest.approx(1.3)
-    colours = near.figure.axes[2]
-    assert colours.get_xscale() == "log"
-    assert colours.get_xlim()[1] == pytest.approx(20.0, rel=0.2)
-
-
 def test_cells_are_drawn_where_they_are(snapshot):
     """The colour of a pixel is that of the density of the cell there; nothing is drawn outside."""
     near = finger(None, snapshot, None, TITLE).axes[1]
@@ -139,17 +128,6 @@ def test_cells_are_drawn_where_they_are(snapshot):
         colour = matplotlib.colormaps["viridis"](norm(1e-3 * snapshot.sed[cell]), bytes=True)[:3]
         expected = colour if cell >= 0 else np.full(3, 255 * 0.92)
         assert np.abs(np.subtract(pixel, expected, dtype=float)).max() <= 3, (x, y)
-
-
-def test_file_has_the_colours_that_were_drawn(tmp_path):
-    """Of a palette: white is white, and large surfaces have their colour."""
-    drawn = style.figure(3.0)
-    drawn.subplots().set_facecolor(style.VERMILION)
-    style.save(drawn, tmp_path / "drawn.png")
-    with Image.open(tmp_path / "drawn.png") as file:
-        assert file.mode == "P"
-        found = np.asarray(file.convert("RGB")).astype(int)
-    assert (found[0, 0] == 255).all() and np.abs(found[225, 300] - [213, 94, 0]).max() <= 3
 
 
 PROFILES = [
@@ -259,12 +237,6 @@ def test_nothing_is_cut_off(snapshot, scale):
         box = figure.get_tightbbox(FigureCanvasAgg(figure).get_renderer())
         wide, high = figure.get_size_inches()
         assert box.x0 >= 0 and box.y0 >= 0 and box.x1 <= wide and box.y1 <= high, figure.get_suptitle()
-
-
-def test_names_are_shown_as_they_are(tmp_path):
-    """A load's name may have dollar signs, between which Matplotlib would set its own mathematics or fail."""
-    figure = surface(tmp_path / "surface.png", [profile(r"After $5 _{ $", 0.0, 1.0)], TITLE)
-    assert figure.axes[0].get_title(loc="left").startswith(r"A  After \$5 _{ \$: ")
 
 
 def test_surface_without_contact(tmp_path):

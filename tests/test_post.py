@@ -6,11 +6,10 @@ from pathlib import Path
 import pytest
 
 import fingerpad as fp
-from fingerpad.reduced.registry import find
 from fingerpad.results.result import Result
 from fingerpad.runs import post
 from fingerpad.runs.context import RunContext, ended, summary
-from fingerpad.runs.solve import solved
+from fingerpad.runs.solve import find, solved
 from fingerpad.scene import from_data
 from tests.commands import python
 from tests.runs import tables_alone
@@ -104,7 +103,7 @@ def some(result):
     if MPI.COMM_WORLD.rank == int(sys.argv[2]):
         raise ValueError("raised on one rank")
     return replace(result, notes=("of the others",))
-entries = [post.Entry("one", lambda *_: True, some), post.Entry("two", lambda *_: True, lambda result: result)]
+entries = [post.Entry("one", some), post.Entry("two", lambda result: result)]
 found = post.kept(cylinders.solve(Scene()), RunContext(Path(sys.argv[1]), MPI.COMM_WORLD, report=False), entries)
 assert found.notes[-1] == "one: ValueError: raised on one rank", found.notes
 assert "of the others" not in found.notes

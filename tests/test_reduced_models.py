@@ -1,16 +1,14 @@
 """The registry of models: a model of one's own is one class and one line, and works wherever the others do."""
 
 import json
-import math
-from dataclasses import replace
 
 import pytest
 
 import fingerpad as fp
 from fingerpad.cli import main
-from fingerpad.reduced import registry
 from fingerpad.reduced.model import Model, reduced_state
 from fingerpad.results.result import Result
+from fingerpad.runs import solve as registry
 from fingerpad.scene import Scene, SceneError
 from tests.measures import rows_of
 
@@ -70,28 +68,6 @@ def test_newtons():
     found = fp.run(Scene(friction=0.3, voltage=0.0, force=0.5), model="block")
     assert found.finger.values("full_slip")["mu_app"] == pytest.approx(0.3, rel=1e-9)
     assert "traces over the force" in str(found.finger)
-
-
-class Floating(Block):
-    """The same without a bone."""
-
-    name = "floating"
-
-    def solve(self, scene, context) -> Result:
-        found = super().solve(scene, context)
-        states = {key: replace(state, bone_height=math.nan) for key, state in found.named.items()}
-        return replace(found, model=self.name, **states)
-
-
-def test_model_without_a_bone_has_no_newtons(monkeypatch):
-    """The value that is missing is named at both doors; the section is computed."""
-    monkeypatch.setitem(registry.MODELS, Floating.name, Floating())
-    words = "the model 'floating' gives its states no bone_height, which forces in newtons"
-    with pytest.raises(SceneError, match=words):
-        fp.run(Scene(friction=0.3, force=0.5), model="floating")
-    with pytest.raises(SceneError, match=words):
-        fp.solve(Scene(force=0.5), "friction", mu_app=0.3, between=(0.1, 0.5), model="floating")
-    assert fp.run(Scene(friction=0.3), model="floating").full_slip.mu_app == pytest.approx(0.3)
 
 
 def test_what_it_cannot_do_is_refused(tmp_path):

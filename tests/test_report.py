@@ -1,4 +1,4 @@
-"""The report of a folder: its numbers are the folder's, a browser opens it, and bad folders are refused or told."""
+"""The report of a folder and its moving picture: the folder's numbers; bad folders are refused."""
 
 import math
 import re
@@ -9,16 +9,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 from matplotlib.collections import LineCollection
+from PIL import Image
 
 from fingerpad.cli import main
-from fingerpad.reduced.registry import find
 from fingerpad.report import run_page, trust
 from fingerpad.report.write import NAME
 from fingerpad.results import fields
-from fingerpad.results.quantities import cell
+from fingerpad.results.pictures import animation
+from fingerpad.results.quantities import QUANTITIES
 from fingerpad.results.result import Result
 from fingerpad.runs.context import RunContext
-from fingerpad.runs.solve import solved
+from fingerpad.runs.solve import find, solved
 from tests.browser import SIZES, asked
 from tests.small_finger import small
 from variational.attraction.dielectric import VACUUM_PERMITTIVITY
@@ -123,7 +124,7 @@ def test_numbers_stand_there_without_scripts(page, folder, tmp_path):
     result = Result.load(folder)
     found = asked(page, TEXT, tmp_path, width=390, height=844, scripts=False)
     slip = result.full_slip
-    shown = cell("f_electrostatic", slip.f_electrostatic, slip.error.f_electrostatic)
+    shown = QUANTITIES["f_electrostatic"].shown(slip.f_electrostatic, slip.error.f_electrostatic)
     assert shown in found["text"].replace("\u00a0", " ")
     assert found["hidden"], "controls that do nothing are shown"
     assert found["wide"] <= 390
@@ -179,16 +180,6 @@ def test_size_of_the_error_is_told(folder, error, what, words):
     assert found[what].verdict == (trust.GOOD if error < 0.02 else trust.CARE)
 
 
-@pytest.mark.parametrize(("error", "what"), [(0.019, "mesh over time"), (0.03, "the mesh is coarse over time")])
-def test_error_over_time_is_told(folder, error, what):
-    """Where paths on two meshes have one; by the same limits."""
-    result = Result.load(folder)
-    record = result.record | {"accuracy": {"over_time": {"f_t": {"difference": error / 2, "error": error}}}}
-    found = {each.what: each for each in trust.findings(replace(result, record=record))}
-    assert f"friction over time is at most {100 * error:.2g} % of its largest value" in found[what].words
-    assert not any("over time" in each.what for each in trust.findings(result))
-
-
 def test_full_slip_without_a_coefficient_has_its_force(folder):
     """As of a finger that slides while nothing presses it: no number is nan, and errors are known."""
     result = Result.load(folder)
@@ -198,7 +189,7 @@ def test_full_slip_without_a_coefficient_has_its_force(folder):
     found = replace(result, full_slip=slip, finger=None)
     page = run_page.page(found)
     text = re.sub(r"<script.*?</script>", "", page, flags=re.DOTALL)
-    assert f"f<sub>T</sub> = {cell('f_t', slip.f_t, slip.error.f_t)} N/m" in text.replace("\u00a0", " ")
+    assert f"f<sub>T</sub> = {QUANTITIES['f_t'].shown(slip.f_t, slip.error.f_t)} N/m" in text.replace("\u00a0", " ")
     assert "would change f<sub>T</sub> at full slip by" in text and not re.search(r"\bnan\b", text)
     told = [each.what for each in trust.findings(found)]
     assert "errors are not estimated" not in told and {"mesh", "the mesh is coarse"} & set(told)
@@ -234,12 +225,8 @@ def test_run_without_an_accepted_step_is_read_back(folder):
         ({"summary.json": '{"f_ext": 75,'}, "is not a folder of a finished run"),
         ({"result.nc": "CDF"}, "result.nc is not whole, or not of a run"),
         ({"summary.json": '{"failure": "f_ext is too large"}'}, "was refused and has no results: f_ext is too large"),
-        ({"table.csv": "voltage,full_slip_mu_app,failure\n100,0.3,\n200"}, "is cut short"),
-        ({"scene.json": "{}", "steps.csv": "step\n"}, "has not ended"),
-        ({"notes.txt": "hello"}, "holds no results of fingerpad"),
-        ({"table.csv": "a,b\n1,2\n"}, "is not the table of a sweep"),
-        ({"summary.json": "[" * 100_000}, "is not a folder of a finished run"),
-        ({"full/0123/asked.json": "{}"}, "has not ended (0 runs are there)"),
+        ({"sweep.json": '{"axes": ['}, "sweep.json in"),
+        ({"sweep.json": '{"axes": ["a"], "rows": [{"b": 1}]}'}, "its rows have no value of a varied key"),
     ],
 )
 def test_bad_folder_is_refused_in_a_sentence(tmp_path, capsys, files, words):
@@ -252,8 +239,54 @@ def test_bad_folder_is_refused_in_a_sentence(tmp_path, capsys, files, words):
     assert not (tmp_path / NAME).exists()
 
 
-@pytest.mark.parametrize("model", ["full", "cylinders"])
-def test_cautions_are_findings(folder, model):
-    """The page is to be used with care where a limit of validity is reached."""
-    found = trust.findings(replace(Result.load(folder), model=model, cautions=("the model ends here",)))
-    assert [each.verdict for each in found if each.words == "The model ends here."] == [trust.CARE]
+# -- the moving picture of a run: its frames, what they are drawn from, and what is left of one that is stopped ------
+@pytest.mark.parametrize("ending", animation.ENDINGS)
+def test_animation_has_a_frame_for_each_state(folder, tmp_path, capsys, ending):
+    """And some between states, each load at least as many as it is said to have; the last frame stands longest."""
+    file = tmp_path / f"run{ending}"
+    assert main(["report", str(folder), "--animate", "--out", str(file)]) == 0 and str(file) in capsys.readouterr().out
+    with Image.open(file) as shown:
+        assert shown.size == (810, 540) and shown.n_frames > len(Result.load(folder).steps)
+        first = shown.convert("RGB").tobytes()
+        shown.seek(shown.n_frames - 1)
+        assert shown.convert("RGB").tobytes() != first
+    assert file.stat().st_size < 3e6
+
+
+def test_motion_ends_in_the_last_state(folder):
+    """Its skin is that of the last step, in single precision, and its places are the reference plus displacements."""
+    kept, state = animation.motion_of(folder), Result.load(folder).steps[-1]
+    assert kept.step[-1] == state.step and len(kept.step) == len(Result.load(folder).steps)
+    xy, skin = kept.between(len(kept.step) - 1, 0.0)
+    last = dict(zip(fields.ALONG, fields.read(folder)["loads/slide"]["skin"], strict=True))
+    assert skin == pytest.approx(np.stack([last[name] for name in animation.ROWS]), rel=1e-6, abs=1e-9, nan_ok=True)
+    assert xy.min(axis=0)[1] == pytest.approx(0.0, abs=1e-6), "the skin is not on the screen"
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [("a.mp4", "must end with one of .webp, .gif"), ("a.webp", "has no motion of a run in fields")],
+)
+def test_animation_that_cannot_be_made_is_refused(copy, capsys, name, words):
+    (copy / fields.FILE).unlink()
+    assert main(["report", str(copy), "--animate", "--out", str(copy / name)]) == 2
+    printed, said = capsys.readouterr()
+    assert words in said and said.count("\n") == 1 and printed == ""
+
+
+@pytest.mark.parametrize("where", ["fingerpad.results.pictures.animation._words", "pathlib.Path.replace"])
+def test_animation_that_is_stopped_leaves_what_was_there(copy, capsys, monkeypatch, where):
+    """By Ctrl-C while a frame is drawn, and before the file is put in place; one sentence, and no part of a file."""
+
+    def stop(*args):
+        raise KeyboardInterrupt
+
+    (file := copy / "animation.webp").write_bytes(b"earlier")
+    there = set(copy.iterdir())
+    frames = animation._frames
+    monkeypatch.setattr(animation, "_frames", lambda states: frames(states)[:2])
+    monkeypatch.setattr(where, stop)
+    assert main(["report", str(copy), "--animate"]) == 130
+    said = capsys.readouterr().err
+    assert said.startswith("fingerpad: stopped by Ctrl-C") and said.count("\n") == 1
+    assert file.read_bytes() == b"earlier" and set(copy.iterdir()) == there

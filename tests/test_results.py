@@ -9,7 +9,7 @@ import pytest
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from fingerpad.accuracy.states import StateRecorder
+from fingerpad.accuracy.solves import StateRecorder
 from fingerpad.model import report
 from fingerpad.model.checks import FullSlip
 from fingerpad.model.state import force_error
@@ -81,32 +81,7 @@ def test_charged_while_it_slides(tmp_path, titles):
     assert "f_ext = 1 N/m, U = 0 to 100 V" in titles["history"] and "U = 0 to 100 V" in titles["surface"]
 
 
-HEIGHT = {"name": "press", "bone_height": -20e-6}
-CHARGED = {"name": "charge", "voltage": 80.0}
-AWAY, FURTHER = {"name": "away", "bone_height": 20e-6, "bone_x": 0.5e-3}, SLIDE | {"bone_x": 1.5e-3}
-
-
-@pytest.mark.parametrize(
-    ("history", "load", "f_ext", "normal"),
-    [
-        ([HEIGHT, SLIDE, CHARGED, SLIDE | {"name": "slide on"}], "slide on", None, ("press", 0.0)),
-        ([AWAY, PRESS, CHARGED, FURTHER], "slide", 1.0, ("charge", 0.5e-3)),
-    ],
-    ids=["two slips", "through the air"],
-)
-def test_headline_is_the_last_full_slip(tmp_path, history, load, f_ext, normal):
-    """Whatever came after the full slip, and whichever of height and force was given; a way in the air is none."""
-    summary = run(from_data(LEAN | {"history": history}), tmp_path, MPI.COMM_WORLD)
-    assert summary["full_slip_load"] == load
-    assert f_ext is None or summary["full_slip_f_ext"] == pytest.approx(f_ext, rel=1e-9)
-    assert (summary["charged_load"], summary["charged_bone_x"]) == (normal[0], pytest.approx(normal[1], rel=1e-12))
-    assert abs(summary["charged_mu_app"]) < 0.01
-    assert float(rows_of(tmp_path)[-1]["f_ext"]) == summary["f_ext"]
-
-
 CHARGE, SLIDE_ON = {"name": "charge", "voltage": 60.0}, {"name": "slide on", "bone_x": 0.6e-3}
-
-
 TURN = {"name": "turn", "bone_x": 0.258e-3}  # after 0.26 mm: too little for a slip the other way
 
 
@@ -270,9 +245,6 @@ def test_headline_states_are_shown_on_the_final_mesh(refined):
     known = np.isfinite(x[1:] + x[:-1])
     force = float((np.diff(x) * (p[1:] + p[:-1]) / 2)[known].sum())
     assert force == pytest.approx(summary["full_slip_f_contact"], rel=0.1), "the trapezoidal rule on few facets"
-
-
-# -- jumps -------------------------------------------------------------------------------------------------
 
 
 def test_profile_is_sorted_along_each_ridge():

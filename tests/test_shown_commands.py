@@ -48,7 +48,6 @@ SMALLER = {
     "voltage=0:200:5": "voltage=0:60:2",
     "voltage=0:200:21": "voltage=0:60:2",
     "0:200:41": "0:200:3",
-    "compare scene.toml": "compare scene.toml --set mesh.contact=2e-5 --model full",
 }
 
 
@@ -77,7 +76,7 @@ def small(line: str) -> list[str]:
 
 def cases() -> list:
     """Return the lines; those that run several models or loads, which other tests do smaller, take long."""
-    several = ("fingerpad compare ", "fingerpad sweep", "fingerpad run --force")
+    several = ("fingerpad sweep", "fingerpad run --force")
     return [pytest.param(line, marks=pytest.mark.long) if line.startswith(several) else line for line in SHOWN]
 
 
@@ -93,7 +92,7 @@ def test_shown_command_runs(line, folder, capsys, monkeypatch):
     if "--feel" in words:  # a run with a load over time
         loads = [{"name": "press", "f_ext": 1.0, "duration": 0.02}]
         fp.run(fp.Scene(**NINE, history=loads, output={"errors": False}), out=words[1])
-    if words[0] == "compare-data":
+    if words[0] == "compare":
         fp.sweep(fp.Scene(), "results/sweep", model="cylinders", voltage=[0, 200], f_ext=[25, 75])
     if "--resume" in words:  # a run that was killed when its checkpoint was whole
         with monkeypatch.context() as kept, no_pictures():

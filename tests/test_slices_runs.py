@@ -1,21 +1,22 @@
-"""Newtons from runs: at the end of a run for nothing, from traces of the full model, and full slip by two paths."""
+"""Newtons from runs: at their ends for nothing, from traces of the full model, and on three meshes."""
 
-import html
 import re
 from dataclasses import replace
+from itertools import combinations
 
 import pytest
 
 import fingerpad as fp
-from fingerpad.reduced.registry import find
 from fingerpad.report import run_page, trust
 from fingerpad.report.page import GOOD
+from fingerpad.results.quantities import FINGER
+from fingerpad.runs.solve import find
 from fingerpad.scene import SceneError, load
 from fingerpad.slices import traces
+from fingerpad.slices.errors import COARSE
 from fingerpad.slices.estimate import with_newtons
 from tests.runs import no_pictures
 from tests.small_finger import small
-from variational.state import Errors
 
 pytestmark = pytest.mark.slow
 SMALL = {"output": {"receptors": False, "errors": False}, "slices": {"radius": 6e-3, "length": 8e-3}}
@@ -100,22 +101,6 @@ def test_estimate_by_another_law_has_the_friction_of_the_run():
     assert run.finger.traces["full_slip"].columns["f_t"][-1] == pytest.approx(run.full_slip.f_t, rel=1e-12)
 
 
-def test_run_that_was_never_charged_has_one_normal_contact(ran):
-    """A run that ended before its voltage, and one at 0 V: one state, with one area, and no word of a charge."""
-    still = ran.uncharged
-    for voltage in (100.0, 0.0):
-        scene = ran.scene.replace(voltage=voltage)
-        cut = replace(ran, scene=scene, charged=replace(still, error=Errors(contact_length=1e-6)), full_slip=None)
-        found = with_newtons(replace(cut, finger=None))
-        assert found.finger.values("charged") == found.finger.values("uncharged")
-        assert found.finger.error["charged"] == found.finger.error["uncharged"]
-        page = html.unescape(run_page.page(found)).replace("\u00a0", " ")
-        assert f"in normal contact, {found.finger.f_ext:.4g} N and 0 V" in page
-        assert found.headline.quantity.name == "contact_area" and "100 V" not in str(found.headline)
-        assert not re.search(r"(?<!un)charged(?! cylinders)", str(found))
-        assert not re.search(r"(?<!un)charged normal contact", page, re.IGNORECASE)
-
-
 @pytest.mark.parametrize("name", ["uncharged", "charged", "full_slip"])
 def test_trace_of_the_closed_form_is_scene_by_scene(name):
     """Points that are computed together are those of one scene after the other, to the tolerance of roots."""
@@ -150,13 +135,6 @@ def test_least_force(tmp_path):
         fp.run(straight, model="cylinders")
 
 
-def test_folder_of_other_results_is_refused_before_the_work(tmp_path, monkeypatch):
-    fp.run(model="cylinders", out=tmp_path)
-    monkeypatch.setattr(traces, "whole", None)
-    with pytest.raises(SceneError, match="holds the results of another scene"):
-        fp.run(fp.Scene(force=0.5), model="cylinders", out=tmp_path)
-
-
 @pytest.mark.parametrize(
     ("other", "words"),
     [
@@ -185,27 +163,52 @@ def test_profile_that_does_not_fit_costs_a_note_alone():
     )
 
 
-def test_report_and_text_of_a_force_begin_with_the_whole_finger(tmp_path):
-    """Its coefficient is not that of the centre slice, nor of the end of a trace."""
-    result = fp.run(fp.Scene(force=2.0), model="cylinders", out=tmp_path)
-    whole = result.finger.values("full_slip")
-    assert whole["mu_app"] != pytest.approx(result.full_slip.mu_app, rel=0.05)
-    page = (tmp_path / "report.html").read_text(encoding="utf-8")
-    assert result.headline.value == whole["mu_app"]
-    page = page.replace("\u00a0", " ")
-    assert "<h1>At 2 N, 200 V raise the friction force from 0.50 to 0.88 N.</h1>" in page
-    assert f"{whole['f_t']:.2f}" == "0.88"
-    assert result.headline.number.startswith(f"= {whole['mu_app']:.3f} ± ")
-    said = '<span class="said">of the whole finger, at full slip, 2 N and 200 V: '
-    assert f'<p class="number">µ<sub>app</sub> {result.headline.number} {said}' in page
-    assert page.index('id="newtons"') < page.index('id="numbers"') and "under its own part of the force" in page
-    text = str(result)
-    assert text.startswith(f"{result.headline}\nWhole finger, as a sum of slices")
-    assert text.index("Middle section of the finger (model 'cylinders')") > 0
-    read = fp.Result.load(tmp_path).finger
-    assert read.under(1.0).flat() == result.finger.under(1.0).flat()
-    for force, off in ((1.0, 5e-3), (0.4, 1e-2)):
-        less = fp.run(fp.Scene(force=force), model="cylinders").finger.values("full_slip")
-        found = read.under(force).values("full_slip")
-        assert found["f_t"] == pytest.approx(less["f_t"], rel=off), "traces of other points"
-    assert fp.Result.load(tmp_path).scene.force == 2.0 and str(fp.Result.load(tmp_path)) == text
+# -- the whole finger on three meshes: every row of its table, in every state, within the errors that are printed ----
+SIZES = (20e-6, 10e-6, 5e-6)  # m
+SHAPE = {"radius": 6e-3, "length": 8e-3}
+ROUNDOFF = 1e-8
+LOADS = {
+    "three ridges": {"f_ext": 4.0},
+    "one ridge": {"f_ext": 0.5},
+    "force": {"force": 2e-3},
+}
+
+
+@pytest.fixture(
+    scope="module",
+    params=["three ridges", *(pytest.param(name, marks=pytest.mark.long) for name in ("one ridge", "force"))],
+)
+def runs(request) -> list[fp.Result]:
+    """The small finger at 100 V with three contact sizes: under 4 and 0.5 N/m, and under a force."""
+    load = LOADS[request.param]
+    return [fp.run(small(slices=SHAPE).replace(**load, mesh={"contact": size})) for size in SIZES]
+
+
+def test_all_rows_differ_by_no_more_than_their_errors(runs):
+    """Each pair of meshes, by the sum of the two errors; without any tolerance but that of roots."""
+    fingers, missed = [run.finger for run in runs], []
+    for one, other in combinations(fingers, 2):
+        assert list(one.states) == ["uncharged", "charged", "full_slip"]
+        for name in one.states:
+            for key in FINGER:
+                mine, its = one.values(name)[key], other.values(name)[key]
+                known = one.error[name].get(key, 0.0) + other.error[name].get(key, 0.0)
+                if abs(mine - its) > known + ROUNDOFF * abs(its):
+                    missed.append((name, key, mine, its, known))
+    assert missed == []
+
+
+def test_part_of_the_coarser_mesh_falls(runs):
+    """Of the area in contact, by half or more from 20 to 5 µm: it covers, and it informs."""
+    for name in runs[0].finger.states:
+        first, last = (run.finger.carried[name][COARSE]["contact_area"] for run in (runs[0], runs[-1]))
+        assert last < 0.5 * first, name
+
+
+def test_traces_end_in_the_states_of_the_section(runs):
+    """Of a run in N/m: as they are on the final mesh, without voltage too."""
+    for run in runs:
+        for name, state in run.named.items() if run.scene.force is None else ():
+            end = run.finger.traces[name]
+            assert end.columns["contact_length"][-1] == pytest.approx(state.contact_length, rel=1e-12)
+            assert end.depth[-1] == pytest.approx(-state.bone_height, rel=1e-12)

@@ -91,13 +91,6 @@ def test_check_after_one_that_failed(solver, monkeypatch):
     assert kept.check() == expected
 
 
-def test_fold_is_at_two_thirds():
-    """A linear spring is pulled in where the skin has come down a third of h_0 + gap (parallel plates), to roundoff."""
-    pull = spring.HALF / (spring.H_0 + spring.FOLD) ** 2
-    start = spring.FOLD + pull / spring.STIFFNESS
-    assert spring.H_0 + spring.FOLD == pytest.approx(2 / 3 * (spring.H_0 + start), rel=1e-12, abs=0)
-
-
 @pytest.fixture(scope="module")
 def sliding():
     """A pressed, charged block that slips everywhere."""

@@ -110,10 +110,9 @@ def test_sign_of_the_voltage_is_no_other_state(pressed):
 
 PRESSED = {"uncharged": ("press", 0.0, 0.0), "charged": ("press", 0.0, 0.0)}
 ALTERNATING = (80.0, 0.0, 80.0, 0.0)
-
-
 CHARGE = ("charge", {"voltage": 80.0})
 AIR = [("lift", {"f_ext": 0.0}), ("over", 1e-3), ("again", {"f_ext": 2.0}), CHARGE, ("slide", 1.4e-3)]
+CHARGING = [("slide", 0.4e-3), ("charge while sliding", 0.8e-3, 200.0)]
 AFTER = {"uncharged": ("again", 0.0, 1.0), "charged": ("charge", 80.0, 1.0), "full_slip": ("slide", 80.0, 1.1)}
 
 
@@ -131,11 +130,13 @@ AFTER = {"uncharged": ("again", 0.0, 1.0), "charged": ("charge", 80.0, 1.0), "fu
         ([(f"part {k}", 0.3e-3 * k, u) for k, u in enumerate(ALTERNATING, start=1)], {}),
         ([(f"to {u:g}", {"voltage": u}) for u in (80.0, 0.0, 80.0)], {"charged": ("to 80", 80.0, 0.0)}),
         (AIR, AFTER),
+        (CHARGING, {"full_slip": ("slide", 0.0, 0.1)}),
+        ([*CHARGING, ("on", 1.1e-3)], {"full_slip": ("charge while sliding", 200.0, 0.8)}),
     ],
     ids=[
         "press alone", "0.15 mm of further sliding", "0.2 mm", "two full slips", "ends in the middle of a slip",
         "there and back", "at x = 0 on the way back", "lift", "charged by turns in sliding", "at rest",
-        "through the air",
+        "through the air", "charged while it slides", "and slides on",
     ],
 )  # fmt: skip
 def test_named_states_of_a_way(pressed, way, named):
@@ -170,16 +171,6 @@ def test_bone_that_goes_aside_in_the_air(touches):
     assert names["full_slip"][0] == "slide" and (touches or names["full_slip"][2] > 1.0)
     assert names.get("charged") == (None if touches else ("charge", 100.0, 1.0))
     assert touches or names["uncharged"] == ("press", 0.0, 1.0)
-
-
-def test_charging_while_it_slides(pressed):
-    """Each voltage is a full slip of its own, which none of these was held; where it stays, the slip is held."""
-    pressed.slide("slide", 0.4e-3)
-    pressed.slide("charge while sliding", 0.8e-3, voltages=200.0)
-    assert pressed.names()["full_slip"] == ("slide", 0.0, 0.1)
-    assert pressed.rows[-1].slip_began == pressed.rows[-1].step
-    pressed.slide("slide on", 1.1e-3)
-    assert pressed.names()["full_slip"] == ("charge while sliding", 200.0, 0.8)
 
 
 def test_all_points_slip_without_friction_before_the_bone_moves():
@@ -254,7 +245,7 @@ def test_touch_belongs_to_the_load_on_the_way():
     history.still("press", f_ext=2.0)
     history.still("press", f_ext=3.0)
     assert [(name, len(mine)) for name, mine in states.by_load(history.rows)] == [("press", 4), ("press", 2)]
-    stopped = states.load_results(history.rows[:1], [Load(name="press", f_ext=2.0)], lambda k, end: None)
+    stopped = states.load_results(history.rows[:1], [Load(name="press", f_ext=2.0)], lambda end: None)
     assert [load.name for load in stopped] == ["press"], "a run stopped in the first touch"
 
 
@@ -272,6 +263,6 @@ def test_first_touch_is_no_named_state(slides):
     found = states.named(history.rows)
     assert "uncharged" not in found and ("charged" in found) == (not slides)
     assert not states.named(history.rows[:2], ["press"]), "a run that was cut short in the touch"
-    press = next(states.load_results(history.rows, [Load(name="press", f_ext=0.05)], lambda k, end: None))
+    (press,) = states.load_results(history.rows, [Load(name="press", f_ext=0.05)], lambda end: None)
     own = [state.contact_length for state in history.rows if state.load == "press"]
     assert press.extremes["contact_length"].max == max(own)

@@ -64,9 +64,9 @@ def test_each_module_is_imported_by_a_quick_test():
                 "results.pictures.drawing",
                 "results.pictures.curves",
                 "results.felt",
-                "results.pictures.spikes",
                 "results.pictures.solid",
                 "runs.batch",
+                "runs.newtons",
             )
         ),
     ]

@@ -109,16 +109,3 @@ def test_slices_of_another_width_are_similar(unit, power):
     )
     assert one.totals["own"] == pytest.approx(-(3e-4**1.5) * 1e-2, rel=1e-12)
     assert two.totals["own"] == pytest.approx(2**power * one.totals["own"], rel=1e-12)
-
-
-@pytest.mark.parametrize(
-    ("name", "unit", "rule", "words"),
-    [
-        ("touch", "N/m", "mean", "has sum = 'mean'; it must be 'slices', or left out"),
-        ("touch", "kPa", "slices", "the unit 'kPa'; it must be one per metre of finger: N/m"),
-        ("gross_area", "m", "slices", "called 'gross_area', as a quantity of the whole finger"),
-    ],
-)
-def test_refused_rules(name, unit, rule, words):
-    with pytest.raises(fp.SceneError, match=words):
-        fp.run(fp.Scene(), model="cylinders", outputs=[fp.Output(name, unit, lambda state: 1.0, sum=rule)])

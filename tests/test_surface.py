@@ -1,4 +1,4 @@
-"""History, integrals and contact patches of the surface, on any number of ranks."""
+"""History, integrals, contact patches and the highest pressure of the surface, on any number of ranks."""
 
 from itertools import permutations
 
@@ -8,12 +8,12 @@ import pytest
 import ufl
 from dolfinx import fem, mesh
 from mpi4py import MPI
-from numpy.testing import assert_allclose
 
 from geometry import tags
 from geometry.bodies import block
 from geometry.mesh import TaggedMesh, load
 from tests.measures import integral
+from variational.resultants import highest
 from variational.surface import Surface
 
 pytestmark = pytest.mark.mpi
@@ -70,16 +70,6 @@ def test_history_is_read_where_it_was_written(body, written, read, request):
     assert total(surface, (history - there) ** 2) < 1e-29 * total(surface, there**2)
 
 
-@pytest.mark.parametrize("body", ["strip", "finger_mesh"])
-def test_history_is_evaluated_where_it_was_written(body, request):
-    """Values at random come back point by point. Tolerance: roundoff."""
-    surface = make(request.getfixturevalue(body))
-    history = fem.Function(surface.history_space)
-    values = np.random.default_rng(surface.mesh.comm.rank).uniform(-1, 1, (len(surface.pairs), 4))
-    surface.set_history(history, values)
-    assert_allclose(surface.evaluate(surface.compile([history]))[0], values, rtol=0, atol=1e-13)
-
-
 @pytest.mark.parametrize("name", ["strip", "finger_mesh"])
 def test_every_facet_is_counted_once(name, request):
     """Facets of all ranks together have the length that the mesh's own measure gives. Tolerance: roundoff."""
@@ -128,10 +118,57 @@ def test_order_of_the_contact_length():
     assert np.polyfit(np.log(sizes), np.log(errors), 1)[0] > 2.5
 
 
-def test_two_facets_of_a_cell_are_refused():
-    """A corner cell with two facets on the surface has no place for their history; all ranks hear of it."""
-    domain = mesh.create_unit_square(MPI.COMM_WORLD, 3, 3)
-    facets = mesh.locate_entities_boundary(domain, 1, lambda x: np.isclose(x[1], 0) | np.isclose(x[0], 1))
-    marked = mesh.meshtags(domain, 1, np.sort(facets), np.full(len(facets), 7, dtype=np.int32))
-    with pytest.raises(ValueError, match="two facets on the touching surface"):
-        Surface(domain, marked, {0: 7})
+# -- the highest pressure from mean pressures of facets: exact for parabolas, blind to a saw, as good on the half ----
+def facets(edges, p, closed=None):
+    """Return forces (N/m), widths (m), parts in contact (m) and ends (m) of facets under a pressure (Pa)."""
+    gauss, weights = np.polynomial.legendre.leggauss(8)
+    width = np.diff(edges)
+    x = edges[:-1, None] + width[:, None] * (1 + gauss) / 2
+    force = (p(x) @ weights) * width / 2
+    ends = np.stack([np.stack([edges[k : len(edges) - 1 + k], 0 * width], axis=1) for k in (0, 1)], axis=1)
+    return force, width, width.copy() if closed is None else closed, ends
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_parabola_is_found_exactly_in_any_order_of_uneven_facets(seed):
+    rng = np.random.default_rng(seed)
+    edges = np.concatenate([[-1.0], np.sort(rng.uniform(-0.9, 0.9, 12)), [1.0]])
+    at = rng.uniform(-0.3, 0.3)
+    found = rng.permutation(13)
+    given = facets(edges, lambda x: 3.0 - (x - at) ** 2)
+    assert highest(*(each[found] for each in given)) == pytest.approx(3.0, rel=1e-12)
+    turned = [each[found] for each in given]
+    turned[3] = turned[3][:, ::-1]  # from the second end to the first
+    assert highest(*turned) == pytest.approx(3.0, rel=1e-12)
+
+
+def test_a_saw_of_five_per_cent_within_facets_moves_it_by_less_than_a_thousandth():
+    edges = np.linspace(-1.0, 1.0, 15)
+    width = edges[1] - edges[0]
+
+    def pressure(x, saw=0.0):
+        t = (x + 1) / width % 1
+        return np.sqrt(np.maximum(1 - x**2, 0)) * (1 + saw * (6 * t * (1 - t) - 1))  # of no mean
+
+    smooth, rough = (highest(*facets(edges, lambda x, saw=saw: pressure(x, saw))) for saw in (0.0, 0.05))
+    assert smooth == pytest.approx(1.0, abs=1e-3)
+    assert rough == pytest.approx(smooth, abs=1e-3)
+    assert pressure(np.linspace(-1, 1, 10001), 0.05).max() > 1.015  # what single points would give
+
+
+def test_it_converges_with_the_facets_to_the_highest_value_of_a_hertzian_pressure():
+    errors = []
+    for count in (8, 16, 32):
+        edges = np.linspace(-1.1, 1.0, count + 1)
+        errors.append(abs(highest(*facets(edges, lambda x: np.sqrt(np.maximum(1 - x**2, 0)))) - 1))
+    assert errors[1] < errors[0] / 4
+    assert errors[2] < errors[1] / 4
+
+
+def test_the_half_of_a_symmetric_contact_has_the_value_of_the_whole():
+    edges = np.linspace(-1.0, 1.0, 13)
+    whole = facets(edges, lambda x: 2.0 - x**2)
+    half = [each[6:] for each in whole]
+    mirrored = [np.concatenate([each, each]) for each in half[:3]]
+    mirrored.append(np.concatenate([half[3], half[3] * [-1.0, 1.0]]))
+    assert highest(*mirrored) == pytest.approx(highest(*whole), rel=1e-12)

@@ -16,16 +16,11 @@ from pathlib import Path
 import pytest
 
 import fingerpad as fp
-from fingerpad.launcher import source
-from fingerpad.results.files import replace
-from fingerpad.results.result import Result
 from fingerpad.runs import batch as module
 from fingerpad.runs import processes
 from fingerpad.runs.batch import key, result, sweep
 from fingerpad.runs.processes import End
 from fingerpad.runs.processes import run as run_module
-from fingerpad.runs.sweep import _older
-from fingerpad.runs.sweep_results import Sweep
 from fingerpad.scene import Scene, from_data
 from tests.small_finger import NINE, small
 
@@ -229,52 +224,9 @@ def test_signal_stops_the_jobs_too(capsys, waits, number, error):
     assert capsys.readouterr().err == "fingerpad: running points that stop after their present step: 2\n"
 
 
-def test_job_that_waits_for_its_turn_is_not_begun(waits):
-    """As at a folder that another sweep has locked."""
-    ends, stopped = [], threading.Event()
-
-    def job():
-        assert stopped.wait(60.0)
-        ends.append(run_module("timeit", ["-n1", "-r1", "__import__('time').sleep(100)"], 100.0))
-        return ends[-1]
-
-    def send():
-        assert waits.wait(60.0)
-        signal.pthread_kill(threading.main_thread().ident, signal.SIGTERM)
-        while not processes._STOPPED.is_set():
-            time.sleep(0.01)
-        stopped.set()
-
-    before = signal.signal(signal.SIGTERM, signal.SIG_DFL)
-    try:
-        threading.Thread(target=send).start()
-        with pytest.raises(SystemExit):
-            processes.finish({0: job}, lambda *end: None, jobs=1)
-    finally:
-        signal.signal(signal.SIGTERM, before)
-    assert [end.reason for end in ends] == ["STOPPED"]
-
-
-def test_two_processes_may_write_a_file_at_once(tmp_path):
-    """As the tasks of an array do with the table of their sweep; one of them is whole at the end."""
-    with ThreadPoolExecutor(4) as pool:
-        list(pool.map(lambda k: replace(tmp_path / "table.csv", f"{k}\n" * 1000), range(400)))
-    lines = (tmp_path / "table.csv").read_text().splitlines()
-    assert len(lines) == 1000 and len(set(lines)) == 1 and [file.name for file in tmp_path.iterdir()] == ["table.csv"]
-
-
 def test_jobs_are_no_ranks_of_a_launcher(monkeypatch):
     """Else MPI would take each for the rank of the sweep itself, as in a batch system's job."""
     monkeypatch.setenv("OMPI_COMM_WORLD_RANK", "1")
     monkeypatch.setenv("PMIX_RANK", "1")
     code = "import os; print([name for name in os.environ if name.startswith(('OMPI_COMM', 'PMIX'))])"
     assert run_module("timeit", ["-n1", "-r1", code], 10.0).stdout.startswith("[]\n")
-
-
-def test_points_of_another_state_of_the_program_are_told(tmp_path):
-    """Kept points are taken over whatever computed them, and the sweep says how many that were."""
-    versions = ({"source": source()}, {"source": "0123456789ab"}, {})
-    found = [Result(Scene(), "full", None, None, None, record={"provenance": {"versions": v}}) for v in versions]
-    study = Sweep({"voltage": (0.0, 1.0, 2.0)}, tuple(found), tmp_path)
-    assert _older(study, tmp_path / "full").startswith("1 of 3 points are of another state of the program; delete")
-    assert _older(Sweep({"voltage": (0.0,)}, tuple(found[:1]), tmp_path), tmp_path) == ""

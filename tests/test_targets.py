@@ -1,19 +1,11 @@
 """What was asked of speed and accuracy, beside what kept numbers have reached."""
 
-from pathlib import Path
-
-import numpy as np
 import pytest
 
-from benchmarks import errors, targets
+from benchmarks import targets
 from benchmarks.errors import FORCE
 from benchmarks.harness import DOCS, Made, keep
 from benchmarks.limits import Limit
-from benchmarks.runs import Run
-from fingerpad.results.result import Result
-from fingerpad.scene import Scene
-from tests.measures import contact_state
-from variational.state import RidgeStates
 
 BY = Made("0.1.0", "abc1234", "2026-11-27")
 
@@ -66,28 +58,3 @@ def test_figures_of_states_without_paths(tmp_path):
     assert (row("further state over", tmp_path).reached, row("further state over", tmp_path).met) == ("0.1", "no")
     assert row("states equal", tmp_path).reached == "2"
     assert (row("states equal", tmp_path).of, row("further state over", tmp_path).of) == (BY.date, older.date)
-
-
-# -- what they rest on -----------------------------------------------------------------------------------------------
-def test_saw_of_a_dome_and_of_a_sawtooth(monkeypatch):
-    """A root has none but what a polynomial misses; a triangle wave of 2 % of the peak has an rms of 2 / sqrt(3) %."""
-    x = np.linspace(-1, 1, 2001)[1:-1]
-    dome, wave = np.sqrt(1 - x**2), np.abs(np.mod(40 * x, 2) - 1) * 2 - 1
-    found = []
-    for p in (dome, dome + 0.02 * wave):
-        arrays = {"full_slip_ridge": np.zeros(len(x)), "full_slip_x": x, "full_slip_p": p}
-        monkeypatch.setattr(Run, "arrays", lambda run, name, arrays=arrays: arrays)
-        found.append(errors.saw(object.__new__(Run)))
-    assert found[0] < 5e-4
-    assert found[1] == pytest.approx(0.02 / np.sqrt(3), rel=0.05)
-
-
-def test_ridges_of_a_named_state_are_its_own():
-    """Those in contact, on the mesh of the state."""
-    number, length = np.arange(3), np.array([1e-4, 0.0, 2e-4])
-    ridges = RidgeStates(number, length, *[np.zeros(3)] * 3, p_c=np.array([2.0, 0.0, 2.5]), d_eq=np.zeros(3))
-    run = object.__new__(Run)
-    run.folder, run.result = Path("run"), Result(Scene(), "full", None, None, contact_state(ridges=ridges))
-    assert run.final("full_slip", "ridges")["p_c"].tolist() == [2.0, 2.5]
-    with pytest.raises(FileNotFoundError, match="has no ridges of uncharged"):
-        run.final("uncharged", "ridges")

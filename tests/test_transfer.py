@@ -11,7 +11,7 @@ from tests.test_contact import MU_F, over
 from variational.solvers.continuation import Continuation, Target
 from variational.solvers.outcome import NotConverged
 from variational.solvers.state_snapshot import take_snapshot
-from variational.solvers.transfer import interpolate, restore, unfolded
+from variational.solvers.transfer import _near, interpolate, restore
 
 pytestmark = pytest.mark.mpi
 H_0, FORCE, VOLTAGE = 0.514e-6, 4.4, 150.0
@@ -210,14 +210,12 @@ def test_a_state_not_found_at_once_is_found(bodies, reached, monkeypatch, failur
     assert -solver.reaction[0] == pytest.approx(reached[FINE][2], rel=2e-6)
 
 
-def test_element_that_a_displacement_folds_is_unfolded(bodies):
-    """By its middle nodes alone, here between corners at rest. A smooth displacement stays as it is."""
-    problem = prepare(bodies[FINE]).problem
-    cells = problem.V.dofmap.list[: problem.mesh.topology.index_map(2).size_local]
-    smooth = 0.05 * problem.V.tabulate_dof_coordinates()[:, :2]
-    np.testing.assert_array_equal(unfolded(problem, smooth), smooth)
-    folded = np.zeros_like(smooth)
-    if MPI.COMM_WORLD.rank == 0:
-        folded[cells[0, 3]] = 1e-3
-    assert MPI.COMM_WORLD.allreduce(float(np.abs(folded).max()), op=MPI.MAX) > 0
-    np.testing.assert_array_equal(unfolded(problem, folded), np.zeros_like(smooth))
+# -- which elements of another mesh a point may be in ----------------------------------------------------------------
+def test_large_triangle_beside_many_small_ones_is_found():
+    """A point in it, beside sixty triangles of a thousandth of its size, all with nearer centroids."""
+    point, angles = np.array([[0.02, 0.02]]), np.linspace(0, 2 * np.pi, 60, endpoint=False)
+    middles = point + 1.1e-3 * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    unit = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+    small = middles + 1e-3 * (unit - unit.mean(axis=0))[:, None]
+    corners = np.concatenate([small, unit[:, None]], axis=1)
+    assert 60 in _near(corners, point)[0]

@@ -1,12 +1,10 @@
 """Numbers with units as text: the same number as in SI, or refused in one sentence that names the unit wanted."""
 
-import math
 from dataclasses import replace
 
 import numpy as np
 import pint
 import pytest
-from pydantic import Field, ValidationError
 
 from fingerpad.results.result import Result
 from fingerpad.scene import Scene, SceneError
@@ -16,7 +14,6 @@ from geometry import units
 from geometry.units import QUANTITIES, to_si
 from tests.measures import contact_state
 from tests.small_finger import small
-from tests.test_light import HEAVY, without
 from variational.state import ContactState
 
 DRIVE = "is a measure of a drive: write voltage = {waveform = 'sine', "
@@ -34,12 +31,8 @@ def value(scene: scenes.Scene, key: str) -> float:
     [
         ("f_ext", "50 N/m", 50.0),
         ("f_ext", "0.05 N/mm", 50.0),
-        ("f_ext", "50 N·m⁻¹", 50.0),
         ("mesh.contact", "5 µm", 5e-6),
-        ("mesh.contact", "5 μm", 5e-6),
-        ("voltage", "0 V", 0.0),
         ("contact.eps_n", "1500 MPa/mm", 1.5e12),
-        ("mesh.contact", "5e-3mm", 5e-6),
         ("voltage", "0.2 kV", 200.0),
         ("numerics.memory", "16 GB", 16e9),
         ("numerics.memory", "2 GiB", 2.0 * 2**30),
@@ -55,7 +48,6 @@ def test_text_is_the_number(key, text, number):
     [
         ("f_ext", "50", "it has no unit; it must be a number in N/m or a text such as '50 N/m'"),
         ("voltage", "120 Vrms", f"its unit is V, and rms {DRIVE}rms = '120 V', frequency = '100 Hz'}}"),
-        ("voltage", "0.3 kV_pp", f"its unit is kV, and pp {DRIVE}peak_to_peak = '0.3 kV', frequency = '100 Hz'}}"),
         (
             "f_ext",
             "50 V",
@@ -67,11 +59,7 @@ def test_text_is_the_number(key, text, number):
             "16 rad",
             "its unit is not a unit of memory; it must be a number in B or a text such as '16 B'",
         ),
-        ("voltage", "9**9**9 V", "its unit is not known; it must be a number in V or a text such as '9 V'"),
         ("f_ext", "0,5 N/m", "decimals have points: write '0.5 N/m'"),
-        ("f_ext", "1,250 N/m", "decimals have points: write '1.250 N/m', or '1250 N/m' if the comma parts thousands"),
-        ("voltage", "3 dB", "its unit is not a unit of voltage; it must be a number in V or a text such as '3 V'"),
-        ("mesh.contact", "5 m(", "its unit is not known; it must be a number in m or a text such as '5 m'"),
         ("friction", "0.25 V", "it must be a number"),
     ],
 )
@@ -108,31 +96,6 @@ def test_plain_units_are_those_of_pint(unit, given, monkeypatch):
     assert units._power(given, unit) is not None
     monkeypatch.setattr(units, "_power", lambda *given: None)
     assert plain == [to_si(f"{number} {given}", unit) for number in numbers]
-
-
-def test_text_without_pint_is_refused():
-    """Where it is not installed, in a sentence."""
-    done = without("from fingerpad import scene; scene.load(None, {'f_ext': '50 dyn/cm'})", *HEAVY, "pint")
-    assert done.stderr.splitlines()[-1].endswith(
-        "SceneError: f_ext is '50 dyn/cm'; its unit needs the package pint, which is not installed; it must be a "
-        "number in N/m or a text such as '50 N/m'"
-    )
-
-
-def test_required_key_takes_no_other_key_s_default():
-    """A number and a switch, with a description of their own, beside keys that have a default."""
-
-    class Own(units.Table):
-        given: units.Finite = 7.0
-        on: units.Switch = True
-        length: units.Finite = Field(..., description="A length.")
-        off: units.Switch = Field(..., description="A switch.")
-
-    assert {name for name, field in Own.model_fields.items() if field.is_required()} == {"length", "off"}
-    assert Own(length=1.0, off=False).given == 7.0
-    for wrong in ({"length": "1"}, {"length": math.inf}, {"off": 1}):
-        with pytest.raises(ValidationError):
-            Own(**{"length": 1.0, "off": False} | wrong)
 
 
 # -- what a program computes from numbers within the ranges ----------------------------------------------------------

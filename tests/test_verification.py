@@ -7,7 +7,7 @@ from scipy.integrate import quad
 from benchmarks.harness import DOCS, kept
 from benchmarks.verification.__main__ import AREAS
 from benchmarks.verification.adhesion import maugis_force, maugis_ratio
-from benchmarks.verification.case import CONVERGENCE, CURVE, ELSEWHERE, IDENTITY, KINDS, Case, Row, order_row
+from benchmarks.verification.case import KINDS, Row
 
 pytestmark = pytest.mark.slow
 CASES = [case for cases in AREAS.values() for case in cases]
@@ -19,13 +19,6 @@ def test_case(case):
     rows = case.rows(True)
     assert rows
     assert [f"{row.quantity}: {row.computed} instead of {row.reference}" for row in rows if not row.holds] == []
-
-
-def test_kinds_of_numbers():
-    """An answer of 0 is that of a curve, an order is one of convergence, and all others are of their case's kind."""
-    rows = [Row("a", 1.0, 1.0, 0.1, ""), Row("b", 0.0, 0.0, 0.1, "", absolute=True), order_row("c", 2, 2, 0.1, "", "")]
-    kinds = [[row.kind for row in Case("", "", lambda small: rows, kind).rows(True)] for kind in (ELSEWHERE, IDENTITY)]
-    assert kinds == [[ELSEWHERE, CURVE, CONVERGENCE], [IDENTITY, CURVE, CONVERGENCE]]
 
 
 def test_maugis_tractions():

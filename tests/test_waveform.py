@@ -65,19 +65,6 @@ def test_flat_parts_of_a_file_have_samples_behind_a_jump():
     assert len(wave(**sine).samples(1.0, 1.0)) <= SAMPLES + 1 + SAMPLES // 2
 
 
-@pytest.mark.parametrize("kind", ["sine", "triangle"])
-@pytest.mark.parametrize("scale", [1.0, 0.5])
-def test_square_of_the_voltage_is_nearly_straight(kind, scale):
-    """Between two samples it is off its straight line by 1.7 % of the peak at most, with half the steps by 0.4 %."""
-    keys = SINE | {"waveform": kind}
-    samples = wave(**keys).samples(1 / 60, scale)
-    off = [
-        abs(shape(keys, (a + b) / 2) ** 2 - (u**2 + v**2) / 2) / 200**2
-        for (a, u), (b, v) in zip(samples, samples[1:], strict=False)
-    ]
-    assert max(off) <= (math.pi / SAMPLES * scale) ** 2 * 1.001
-
-
 def test_file_is_straight_between_its_points(write, tmp_path):
     """With its zeros and more samples where the voltage changes much; the scene keeps the points and not the file."""
     (tmp_path / "mine.csv").write_text(TABLE + "0,0\n0.01,100\n\n0.02,-100\n0.04,-100\n", encoding="utf-8")
@@ -125,8 +112,6 @@ def refusal(*loads: dict) -> str:
         ({"bone_x": 1e-3, "speed": 0.1, "duration": 1.0}, "history[1].speed is 0.1 and history[1].duration is 1"),
         ({"voltage": SINE, "duration": 1.0, "f_ext": 2.0}, "history[1].f_ext is 2 and history[1].voltage is a wave"),
         ({"voltage": SINE, "speed": 0.1}, "history[1].speed is 0.1 and the bone does not move"),
-        ({"voltage": SINE, "duration": 1.0, "bone_height": 0.0}, "history[1].bone_height is 0 and"),
-        ({"voltage": {"waveform": "file"}}, "history[1].voltage.file is missing"),
         ({"voltage": SINE | {"amplitude": 4e3, "offset": -2e3}, "duration": 1.0}, "history[1].voltage.offset is -2000"),
         (
             {"voltage": SINE, "bone_x_by": 1e-3, "speed": 0.1, "until_full_slip": True},
@@ -140,8 +125,6 @@ def refusal(*loads: dict) -> str:
             {"voltage": {"waveform": "sine", "amplitude": 3.0}, "duration": 1.0},
             "history[1].voltage.frequency is missing; history[1].voltage.waveform is 'sine' and needs it",
         ),
-        ({"voltage": SINE | {"times": [0, 1]}, "duration": 1.0}, "history[1].voltage.times is given"),
-        ({"voltage": SINE | {"phase": 1}, "duration": 1.0}, "history[1].voltage.phase is not a key"),
         (
             {"voltage": {"waveform": "file", "times": [0, 1], "voltages": [0, 9]}, "duration": 2.0},
             "history[1].voltage has values up to 1 s and the load takes 2 s",
@@ -198,18 +181,13 @@ def test_nothing_but_the_voltage_holds_the_skin(offset, allowed):
     [
         (None, "which cannot be read: 'No such file or directory'"),
         ("time (m),voltage (V)\n0,1\n", "which has 'time (m)' in 'm', which is not a unit of time; it must be in s"),
-        ("time (s),current (A)\n0,1\n", "has 'current (A)' in 'A', which is not a unit of voltage; it must be in V"),
-        (TABLE + "0,1\n", "times are 1; there must be from 2"),
-        (TABLE + "0,1\n1,2,3\n", "which has more cells in line 3 than its 2 heads"),
         (TABLE + "0,1\n1,inf\n", "which has 'inf' in line 3 of 'voltage (V)'; it must be a finite number"),
         (TABLE + "0,1\n1,6000\n", "which at 1 s has a number that is 6000 V; it must be 0 or from 0.001 to 5000 V"),
-        (TABLE + f"0,{'1' * 200_000}\n", "which has no two columns of numbers"),
         (TABLE + "0,1\n2,2\n2,3\n", "times are 2 and then 2 s; each must be later"),
         (
             TABLE + "".join(f"{k},{(-1) ** k}\n" for k in range(2500)),
             "which has 2500 points; there must be from 2 to 2000 of them, and means of 2 have 0.0",
         ),
-        (TABLE + "\0,1\n", "which is no text"),
     ],
     ids=lambda value: str(value)[:40],
 )

@@ -10,9 +10,8 @@ import pytest
 from mpi4py import MPI
 
 import fingerpad as fp
-from fingerpad.accuracy import solves
+from fingerpad.accuracy import whole_path
 from fingerpad.accuracy.richardson import TWO, of_two_meshes, value
-from fingerpad.accuracy.solves import Solves
 from fingerpad.accuracy.states import Solve
 from fingerpad.accuracy.whole_path import WholePath, differences
 from fingerpad.model.options import FingerModel, by_rule, plan
@@ -77,6 +76,7 @@ def test_errors_are_the_difference_to_the_path_on_elements_twice_as_large():
 
 @pytest.mark.slow
 @pytest.mark.mpi
+@pytest.mark.skipif(MPI.COMM_WORLD.size == 1, reason="one rank has no other to agree with")
 def test_same_errors_on_all_ranks():
     """As on one rank. Tolerance: that of the solves, of which the errors are differences."""
     alone = MPI.COMM_WORLD.bcast(_errors(fp.run(scene(), comm=MPI.COMM_SELF)) if MPI.COMM_WORLD.rank == 0 else None)
@@ -152,18 +152,18 @@ def test_path_that_is_lost_on_the_coarser_mesh(monkeypatch):
 def test_signal_on_the_coarser_path(monkeypatch, tmp_path):
     """The run ends as at any signal, and goes on with the coarser path alone."""
     whole = fp.run(scene())
-    plain = solves.follow
+    plain = whole_path.follow
 
     def stopped(model, comm, on_step):
         signal.raise_signal(signal.SIGTERM)
         return plain(model, comm, on_step)
 
-    monkeypatch.setattr(solves, "follow", stopped)
+    monkeypatch.setattr(whole_path, "follow", stopped)
     with pytest.raises(SystemExit) as ended:
         fp.run(scene(), out=tmp_path)
     result, steps = ended.value.result, len(whole.steps)
     assert result.failure.startswith(f"stopped by SIGTERM after step {steps}") and "--resume" in result.failure
-    monkeypatch.setattr(solves, "follow", plain)
+    monkeypatch.setattr(whole_path, "follow", plain)
     again = fp.run(scene(), out=tmp_path, resume=True)
     assert dataset.values(again) == dataset.values(whole) and again.notes == whole.notes
     assert again.record["accuracy"]["over_time"] == whole.record["accuracy"]["over_time"]
@@ -175,9 +175,9 @@ def _whole_path(monkeypatch, fine: Solve, coarse: Solve) -> WholePath:
     asked = scene(PRESS)
     model = FingerModel(by_rule(asked), plan(asked)).of_path()
     assert model.mesh.contact == SIZES["contact"] and model.final is None
-    monkeypatch.setattr(solves, "follow", lambda *args: coarse)
+    monkeypatch.setattr(whole_path, "follow", lambda *args: coarse)
     states = [next(iter(fine.states.values())).state]
-    found = WholePath(Solves(model, fine, MPI.COMM_SELF, lambda text: None, lambda: None), states, lambda done: None)
+    found = WholePath(model, fine, MPI.COMM_SELF, lambda text: None, states, lambda done: None)
     found.run()
     return found
 
@@ -195,29 +195,6 @@ def test_rule_is_that_of_two_meshes_without_short_facets(monkeypatch):
     assert found.estimates() == of_two_meshes(coarse.parts(), fine.parts(), {"full_slip": (40e-6, 20e-6)}, short=False)
     changed = abs(value("full_slip_f_t", coarse.parts()["full_slip_f_t"]) - fine.values()["full_slip_f_t"])
     assert found.estimates()["full_slip_f_t"] == pytest.approx(TWO * changed, rel=1e-12) and found.notes == []
-
-
-def test_other_ridges_in_contact_are_noted(monkeypatch):
-    fine, coarse = _known(20e-6), _known(40e-6)
-    change(coarse, ridges_in_contact=16)
-    found = _whole_path(monkeypatch, fine, coarse)
-    assert found.notes == [
-        "17 ridges touch at full slip, and 16 on elements twice as large: the estimated discretisation error includes "
-        "this change"
-    ]
-    assert found.estimates()["full_slip_mu_app"] > 0
-
-
-@pytest.mark.parametrize("facets", [3.9, 4.1])
-def test_few_facets_in_contact_are_noted(monkeypatch, facets):
-    """A contact of one or two facets on the coarser mesh changes by accident."""
-    fine, coarse = _known(20e-6), _known(40e-6)
-    change(fine, contact_length=17 * facets * 20e-6)
-    found = _whole_path(monkeypatch, fine, coarse)
-    words = (
-        "a ridge touches with 3.9 facets in the mean at full slip: on so few the estimated discretisation errors may"
-    )
-    assert [note.startswith(words) for note in found.notes] == [True] * (facets < 4)
 
 
 @pytest.mark.parametrize("other", [None, "back"])
@@ -250,22 +227,10 @@ def path(*loads, scale: float = 1.0, more: float = 0.0):
 T = np.linspace(0.1, 1.0, 10)
 
 
-def test_same_path_has_no_difference():
-    mine = path((T, T), (T, T))
-    assert differences(mine, mine) == pytest.approx({"f_t": 0.0, "contact_length": 0.0}, abs=1e-12)
-
-
 def test_largest_difference_over_the_largest_amount():
     """At the end of the first load. Between states of other times the curve has a straight line to roundoff."""
     mine, theirs = path((T, T), (T, 1 - T)), path((T[1::2], 1.1 * T[1::2]), (T, 1 - T))
     assert differences(mine, theirs)["f_t"] == pytest.approx(0.1, rel=1e-9)
-
-
-def test_load_that_lasts_longer_shifts_nothing():
-    """A slide until full slip ends when it does."""
-    flat = np.full(10, 1.0)
-    mine, theirs = path((T, flat), (T, T)), path((2 * T, flat), (T, T))
-    assert differences(mine, theirs)["f_t"] == pytest.approx(0.0, abs=1e-12)
 
 
 def test_jump_is_none_between_states():

@@ -1,10 +1,9 @@
 """Compiled forms: for which processor, one process at a time, and what a killed compile leaves behind.
 
-FFCx takes a source file without a result for a compile at work. A killed process leaves one, which blocks its form for
-good. Here a process holds a lock on the source file while it compiles, and the kernel frees the lock when the process
-ends, in whatever way and on whatever machine. The compile is in a private folder, and the finished module is put in its
-place whole. So the lock only saves work: where a file system has no locks, or where the process with the lock was
-stopped, another process compiles the form as well, and either result serves. No file of another process is deleted.
+FFCx takes a source file without a result for a compile at work, so that a killed process blocks its form for good. Here
+a process holds a lock on the source file while it compiles, which the kernel frees when the process ends. The compile
+is in a private folder, and the finished module is put in its place whole. So the lock only saves work: without locks,
+or where the process with the lock was stopped, another process compiles the form as well, and either result serves.
 Caches of other programs are left to FFCx.
 """
 
@@ -21,7 +20,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from importlib.machinery import EXTENSION_SUFFIXES
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 import cffi
 import dolfinx.jit
@@ -60,11 +59,6 @@ def _own() -> dict[str, Any]:
 OPTIONS = _own()
 
 
-def options() -> dict[str, Any]:
-    """Return all options that forms are compiled with, those of dolfinx's own files included."""
-    return dict(dolfinx.jit.get_options(OPTIONS))
-
-
 # -- in the place of FFCx's functions --------------------------------------------------------------------
 _get_cached_module, _compile_objects = ffcx_jit.get_cached_module, ffcx_jit._compile_objects
 
@@ -73,26 +67,15 @@ def _finished(module: str, names: Sequence[str], folder: Path, timeout: int = 0)
     """Return the objects of a compiled module, and the module; None for both where it must be compiled."""
     if Path(folder) != OPTIONS["cache_dir"]:
         return _get_cached_module(module, names, folder, timeout)
-    if (folder / f"{module}.c.cached").exists():
-        with contextlib.suppress(ImportError):  # the library was deleted, or is no longer whole
-            return _load(folder, module, names)
+    # FFCx lists the cache, which may have thousands of files.
+    libraries = [path for suffix in EXTENSION_SUFFIXES if (path := folder / f"{module}{suffix}").exists()]
+    if (folder / f"{module}.c.cached").exists() and libraries:
+        spec: Any = importlib.util.spec_from_file_location(module, libraries[0])
+        with contextlib.suppress(ImportError):  # the library is no longer whole
+            loaded = importlib.util.module_from_spec(spec)
+            spec.loader.exec_module(loaded)
+            return [getattr(loaded.lib, name) for name in names], loaded
     return None, None
-
-
-def _load(folder: Path, module: str, names: Sequence[str]) -> tuple[list[Any], Any]:
-    """Return the objects of a library, and its module; without a list of the cache, which may have thousands of files.
-
-    Raises:
-        ImportError: there is no such library, or it is not whole.
-    """
-    paths = (folder / f"{module}{suffix}" for suffix in EXTENSION_SUFFIXES)
-    library = next((path for path in paths if path.exists()), folder / module)
-    spec = importlib.util.spec_from_file_location(module, library)
-    if spec is None or spec.loader is None:
-        raise ImportError(f"{folder} has no library of {module}")
-    loaded = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(loaded)
-    return [getattr(loaded.lib, name) for name in names], loaded
 
 
 def _compile(
@@ -146,24 +129,20 @@ def _turn(source: Path) -> Iterator[bool]:
     source.parent.mkdir(parents=True, exist_ok=True)
     begun = source.exists() or source.with_suffix(".c.cached").exists()
     start, silent = time.monotonic(), True
-    with source.open("a") as file:
-        while not _locked(file) and time.monotonic() - start < OPTIONS["timeout"]:
-            if silent and time.monotonic() - start > _SILENT:
-                silent = False
-                _print(f"waiting for another process that compiles the same form, for {OPTIONS['timeout']} s at most")
-            time.sleep(0.05)
+    with source.open("a") as file:  # closing it undoes the lock
+        while time.monotonic() - start < OPTIONS["timeout"]:
+            try:
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                break
+            except BlockingIOError:
+                if silent and time.monotonic() - start > _SILENT:
+                    silent = False
+                    most = f"for {OPTIONS['timeout']} s at most"
+                    _print(f"waiting for another process that compiles the same form, {most}")
+                time.sleep(0.05)
+            except OSError:  # a file system without locks
+                break
         yield begun
-
-
-def _locked(file: IO[str]) -> bool:
-    """Lock a file, which closing it undoes; return False if another process has the lock."""
-    try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return False
-    except OSError:  # a file system without locks
-        return True
-    return True
 
 
 def _print(what: str) -> None:

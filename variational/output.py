@@ -84,12 +84,11 @@ def _stresses(problem: Problem) -> dict[tuple[int, ...], Any]:
     return {tags: kinematics.cauchy(law, F, problem.pressures[tags]) for tags, law in problem.laws.items()}
 
 
-def tensors_per_cell(problem: Problem) -> tuple[Array, Array]:
+def _tensors_per_cell(problem: Problem) -> tuple[Array, Array]:
     """Return means over the corners of each cell of this rank, which for linear fields are those over the cell.
 
     Returns:
-        Cauchy stress (Pa), components xx, yy, zz and xy, shape (cells, 4), and Green's strain, xx, yy and xy, shape
-        (cells, 3).
+        Cauchy stress (Pa), xx, yy, zz and xy, shape (cells, 4), and Green's strain, xx, yy and xy, shape (cells, 3).
     """
     corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
     stress = Cellwise(problem.mesh, problem.cell_tags, _stresses(problem), corners).evaluate().mean(axis=1)
@@ -98,22 +97,21 @@ def tensors_per_cell(problem: Problem) -> tuple[Array, Array]:
     return stress[:, [0, 4, 8, 1]], strain
 
 
-def sed_per_cell(problem: Problem) -> tuple[NDArray[np.int32], Array]:
-    """Return the cells of this rank and the mean strain energy density of each (J/m^3 of reference volume)."""
+def _sed_per_cell(problem: Problem) -> Array:
+    """Return the mean strain energy density of each cell of this rank (J/m^3 of reference volume), shape (cells,)."""
     # Degree 2 integrates the linear solid's energy at P2 exactly.
     points, weights = basix.make_quadrature(basix.CellType.triangle, 2)
     sample = Cellwise(problem.mesh, problem.cell_tags, problem.densities, np.asarray(points))
-    means = (np.asarray(weights) / np.sum(weights)) @ sample.evaluate()[:, :, 0].T
-    return owned_cells(problem.mesh), np.asarray(means)
+    means: Array = (np.asarray(weights) / np.sum(weights)) @ sample.evaluate()[:, :, 0].T
+    return means
 
 
 class Receptors:
-    """Strain energy density at sites in the body: material points, given in the reference configuration.
+    """Strain energy density, stress and place at sites in the body: material points of the reference configuration.
 
-    They are each evaluated by the ranks that own its cells.
-
-    A site on a facet has the mean over all its cells, since a strain jumps there: so neither the numbering nor the
-    number of ranks matters, and a site on the axis of a mirrored mesh does not belong to one half.
+    A site is evaluated by the ranks that own its cells. One on a facet has the mean over all its cells, since a strain
+    jumps there: so neither the numbering nor the number of ranks matters, and a site on the axis of a mirrored mesh
+    does not belong to one half.
 
     Attributes:
         sites: reference positions (m), shape (n, 2).
@@ -136,7 +134,8 @@ class Receptors:
         self._cells, site, points = _find(mesh, self.sites)
         comm = mesh.comm
         self._site = np.concatenate(comm.allgather(site))  # of each pair of a site and one of its cells, rank by rank
-        self._first = sum(comm.allgather(len(site))[: comm.rank])  # pair of this rank
+        first = sum(comm.allgather(len(site))[: comm.rank])
+        self._own = np.arange(first, first + len(site))  # pairs of this rank
         self._count = np.bincount(self._site, minlength=len(self.sites))
         nowhere = np.flatnonzero(self._count == 0)
         if len(nowhere):
@@ -155,8 +154,9 @@ class Receptors:
         return Cellwise(self._mesh, self._problem.cell_tags, stresses, self._points)
 
     @cached_property
-    def _displacement(self) -> fem.Expression:
-        return fem.Expression(self._problem.u, self._points, jit_options=jit.OPTIONS)
+    def _displacement(self) -> Cellwise:
+        everywhere = tuple(tag for tags in self._problem.laws for tag in tags)
+        return Cellwise(self._mesh, self._problem.cell_tags, {everywhere: self._problem.u}, self._points)
 
     def compression(self) -> Array:
         """Return minus the Cauchy stress normal to the screen (Pa) at the sites, shape (n,), on every rank."""
@@ -168,14 +168,12 @@ class Receptors:
 
     def positions(self) -> Array:
         """Return the sites' current positions (m), shape (n, 2), on every rank."""
-        u = compat.evaluate_on_cells(self._displacement, self._mesh, self._cells)
-        return self.sites + self._mean(u.reshape(len(self._cells), len(self._site), 2))
+        return self.sites + self._mean(self._displacement.evaluate(self._cells))
 
     def _mean(self, values: Array) -> Array:
         """Pick each own pair's value from those at all pairs' points, (own, pairs, k); each site's mean, (n, k)."""
-        own = np.arange(len(self._cells))
         total = np.zeros((len(self._site), values.shape[2]))
-        total[self._first + own] = values[own, self._first + own]
+        total[self._own] = values[np.arange(len(self._own)), self._own]
         self._mesh.comm.Allreduce(MPI.IN_PLACE, total)
         mean = np.zeros((len(self.sites), total.shape[1]))
         np.add.at(mean, self._site, total)
@@ -217,7 +215,7 @@ class Nodes:
 
     def __init__(self, problem: Problem) -> None:
         mesh = problem.mesh
-        self._comm, cells = mesh.comm, np.arange(mesh.topology.index_map(2).size_local)
+        self._comm, cells = mesh.comm, owned_cells(mesh)
         # The first three degrees of freedom of a Lagrange triangle are its vertices, in the geometry's order.
         self._dofs = problem.V.dofmap.list[cells][:, :3]
         nodes = compat.cell_geometry(mesh)[cells][:, :3]
@@ -247,7 +245,7 @@ class Nodes:
 
         An edge has the number of the opposite vertex.
         """
-        cells = np.arange(len(self._dofs))
+        cells = owned_cells(problem.mesh)
         nodes = problem.mesh.geometry.x[compat.cell_geometry(problem.mesh)[cells]][:, :, :2]
         straight = (nodes[:, [1, 0, 0]] + nodes[:, [2, 2, 1]]) / 2
         basis = problem.V.element.basix_element.tabulate(0, _MIDDLES)[0, :, :, 0]
@@ -260,9 +258,8 @@ class Lines:
     """The lines of a body, found once, and its states with them; numbered as the mesh was before it was distributed."""
 
     def __init__(self, problem: Problem) -> None:
-        self._nodes, cells = Nodes(problem), problem.mesh.topology.index_map(2).size_local
-        tag = np.zeros(cells, dtype=np.int32)
-        own = problem.cell_tags.indices < cells
+        self._nodes, tag = Nodes(problem), np.zeros_like(owned_cells(problem.mesh))
+        own = problem.cell_tags.indices < len(tag)
         tag[problem.cell_tags.indices[own]] = problem.cell_tags.values[own]
         self._tag = self._nodes.by_cell(tag)
         self._ends, self._beside, self._edge = outline(self._nodes.coordinates, self._nodes.triangles, self._tag)
@@ -276,8 +273,8 @@ class Lines:
         """
         nodes, edges = self._nodes, (self._beside[:, 0], self._edge)
         vertices, middles = (nodes.coordinates, nodes.gather(problem)), nodes.middles(problem)
-        tensors = [nodes.by_cell(each) for each in tensors_per_cell(problem)] if fields else []
-        sed = nodes.by_cell(sed_per_cell(problem)[1]) if fields else np.zeros(len(self._tag))
+        tensors = [nodes.by_cell(each) for each in _tensors_per_cell(problem)] if fields else []
+        sed = nodes.by_cell(_sed_per_cell(problem)) if fields else np.zeros(len(self._tag))
         if problem.mesh.comm.rank > 0:
             return None
         x, u = (np.concatenate([at, there[edges]]) for at, there in zip(vertices, middles, strict=True))

@@ -17,8 +17,18 @@ PATH = "path"
 """How a state of a path was reached."""
 
 
+class _WithOwn:
+    """Has values of outputs that are computed from a state, by name; each is an attribute too."""
+
+    def __getattr__(self, name: str) -> float:
+        own = self.__dict__.get("own", {})  # not yet there while a copy is made
+        if name in own:
+            return float(own[name])
+        raise AttributeError(f"{type(self).__name__} has no {name!r}")
+
+
 @dataclass(frozen=True)
-class Errors:
+class Errors(_WithOwn):
     """Changes of a state's quantities, in their units; NaN where a change was not estimated."""
 
     mu_app: float = math.nan
@@ -42,13 +52,6 @@ class Errors:
         names = {f.name for f in fields(cls)}
         own = {name: value for name, value in changes.items() if name not in names}
         return cls(**{name: value for name, value in changes.items() if name in names}, own=own)
-
-    def __getattr__(self, name: str) -> float:
-        """Return the change of an output of one's own by its name."""
-        own = self.__dict__.get("own", {})  # not yet there while a copy is made
-        if name in own:
-            return float(own[name])
-        raise AttributeError(f"there is no change of {name!r}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,7 +157,7 @@ class StepRecord:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class ContactState:
+class ContactState(_WithOwn):
     """A state of equilibrium of a finger, or of one ridge, on the screen."""
 
     step: int = 0
@@ -232,13 +235,6 @@ class ContactState:
         if self.ridges is None:
             raise ValueError("the state has no values by ridge; models without a path and unfinished runs have none")
         return self.ridges
-
-    def __getattr__(self, name: str) -> float:
-        """Return an output of one's own by its name."""
-        own = self.__dict__.get("own", {})  # not yet there while a copy is made
-        if name in own:
-            return float(own[name])
-        raise AttributeError(f"a state has no {name!r}")
 
     def row(self) -> dict[str, Any]:
         """Return conditions, results and the record of the step as one flat row, as ``steps.csv`` holds it."""

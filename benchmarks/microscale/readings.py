@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from benchmarks import harness
-from fingerpad.model.cautions import BALANCED
+from variational.roughness.closure import BALANCED
 
 LOAD, PAPER, NEAR = "75", 0.55, 0.1
 """The paper's force (N/m) and µ_app, and what counts as equal to it."""

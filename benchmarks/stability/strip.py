@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry import tags
-from geometry.curved import curve_edges
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import Profiles
+from geometry.triangles import curve_edges
 
 _MM = 1e3  # gmsh's tolerances suit models in mm
 _SAMPLES = 32  # spline points of half a period

@@ -5,12 +5,16 @@ from contextlib import suppress
 from dataclasses import fields, replace
 from typing import Any
 
+import numpy as np
+from mpi4py import MPI
+
 from fingerpad.accuracy.richardson import RECEPTOR, TWO, of_sum, of_two_meshes, rigid
 from fingerpad.accuracy.states import Solve, with_values
 from fingerpad.model.options import FingerModel
 from fingerpad.results.quantities import QUANTITIES, Output, plus_minus
 from fingerpad.results.states import WORDS
 from fingerpad.scene.messages import SceneError
+from variational.caution import Caution
 from variational.element import ELEMENTS
 from variational.state import ContactState, Errors
 
@@ -22,6 +26,7 @@ class Estimate:
 
     Attributes:
         model: with the mesh of the path.
+        found: all solves of the states, in order, the path's first.
         base: the states that the errors are of.
         coarse: the same on a coarser mesh; None where there is none.
         failure: why the accuracy asked for is not reached, else empty.
@@ -30,15 +35,10 @@ class Estimate:
         degree: of the elements.
     """
 
-    def __init__(self, model: FingerModel, base: Solve, show: Callable[[str], None]) -> None:
-        """Begin with the states of the path.
-
-        Args:
-            model: with the mesh of the path.
-            base: the path's states.
-            show: prints a line.
-        """
-        self.model, self.base, self._show = model, base, show
+    def __init__(self, model: FingerModel, path: Solve, comm: MPI.Comm, show: Callable[[str], None]) -> None:
+        """Begin with the states of the path; ``show`` prints a line."""
+        self.model, self.base, self.found = model, path, [path]
+        self._comm, self._show = comm, show
         self.coarse: Solve | None = None
         self.failure, self.notes = "", list[str]()
         self.penalty: dict[str, float] = {}
@@ -74,7 +74,30 @@ class Estimate:
             "step_scale": self.model.numerics.step_scale,
             "quantities": quantities,
             "notes": self.notes,
+            **self._cost(),
         }
+
+    def _cost(self) -> dict[str, Any]:
+        """Return what each solve and all of them took, ready for JSON; collective."""
+        seconds = [float(np.sum(self._comm.allgather(solve.processor_seconds))) for solve in self.found]
+        return {
+            "solves": [
+                {
+                    "mesh": solve.mesh.model_dump(),
+                    "unknowns": solve.unknowns,
+                    "factorisations": solve.factorisations,
+                    "processor_seconds": spent,
+                }
+                for solve, spent in zip(self.found, seconds, strict=True)
+            ],
+            "factorisations": sum(solve.factorisations for solve in self.found),
+            "unknowns_times_factorisations": sum(s.unknowns * s.factorisations for s in self.found),
+            "processor_seconds": sum(seconds),
+        }
+
+    def doubts(self) -> list[Caution]:
+        """Return which states roundoff may have chosen among others."""
+        return [Caution("roundoff", each) for solve in self.found for each in solve.doubts]
 
     def _compare(self, coarse: Solve, fine: Solve, short: bool = True) -> None:
         """Take the errors of states from two meshes, of which the coarser has elements twice as large.

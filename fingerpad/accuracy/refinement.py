@@ -18,20 +18,26 @@ beside it. Not estimated: the effect on normal contact of a friction history tha
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
+from mpi4py import MPI
+
 from fingerpad.accuracy.estimate import Estimate, of_key
 from fingerpad.accuracy.richardson import MeshParameter, errors, rigid, to_refine
-from fingerpad.accuracy.solves import Solves
-from fingerpad.accuracy.states import Solve, quantities
+from fingerpad.accuracy.solves import follow, solve_again
+from fingerpad.accuracy.states import Solve, State, quantities
 from fingerpad.model.cautions import lost
+from fingerpad.model.options import FingerModel
+from fingerpad.model.schedule import loads_to_normal_contact
 from fingerpad.model.simulation import RestartRequired
 from fingerpad.results.interrupt import Interrupted
 from fingerpad.results.states import WORDS
 from fingerpad.scene.messages import counted
+from geometry.parameters import MeshSize
 from geometry.profiles import GeometryError
+from variational.contact.formulation import Formulation
 from variational.solvers.continuation import StepFailed
 
 _SIZES = {"contact": ("contact",), "bulk": ("growth", "interface", "coarsest"), "receptor": ("receptor",)}
@@ -44,22 +50,28 @@ class Refinement(Estimate):
     Attributes:
         refinements: how often each mesh parameter was halved.
         stiffer: the contact over a screen of twice the stiffness; None where the screen is rigid.
-        solves: all that was solved.
+        restart: what a path with other steps turned out to need, if anything.
         to_come: solves that are still to come, the one that starts now among them; more where they are not enough.
     """
 
-    def __init__(self, solves: Solves) -> None:
+    def __init__(
+        self, model: FingerModel, path: Solve, comm: MPI.Comm, show: Callable[[str], None], pause: Callable[[], None]
+    ) -> None:
         """Choose the mesh parameters.
 
         Args:
-            solves: the path's alone.
+            model: of the path.
+            path: its states.
+            comm: communicator of the meshes.
+            show: prints a line.
+            pause: called before each solve; may raise to stop.
 
         Raises:
             StepFailed: the path has no state in which a quantity asked for is known.
         """
-        super().__init__(solves.model, solves.found[0], solves.show)
-        self.solves = solves
-        path, model = self.base, self.model
+        super().__init__(model, path, comm, show)
+        self._pause = pause
+        self.restart: RestartRequired | None = None
         self.asked = model.asked
         for name in {"mu_app", "f_t"} & set(self.asked) if "full_slip" not in path.states else ():
             raise StepFailed(
@@ -109,7 +121,7 @@ class Refinement(Estimate):
                 self.failure = f"the accuracy asked for could not be established: {error}"
             else:
                 self._note(f"discretisation errors could not be estimated: {error}")
-        return self.solves.restart
+        return self.restart
 
     def _solve_on_final_mesh(self) -> RestartRequired | None:
         """Solve the states again on the mesh that the scene gives, finest where their contact ends.
@@ -117,11 +129,11 @@ class Refinement(Estimate):
         Returns:
             That the path must be followed on that mesh, where other ridges touch than on the path's.
         """
-        path, model, solves = self.base, self.model, self.solves
+        path, model = self.base, self.model
         final = model.mesh if model.final is None else model.final
         reason = ""
         try:
-            fine = solves.on_mesh(final, path.states, True, self.stiffer)
+            fine = self._on_mesh(final, path.states, True, self.stiffer)
             others = [name for name in path.states if _ridges(path, name) != _ridges(fine, name)]
             if others:
                 name = others[0]
@@ -135,7 +147,7 @@ class Refinement(Estimate):
         if reason and model.mesh != final:
             return RestartRequired(f"{reason}; the path is followed on the final mesh", model.changed(mesh=final))
         coarser = model.coarser(final)
-        self._compare(path if path.mesh == coarser else solves.on_mesh(coarser, path.states), fine)
+        self._compare(path if path.mesh == coarser else self._on_mesh(coarser, path.states), fine)
         return None
 
     def _penalty(self, solve: Solve) -> None:
@@ -165,10 +177,10 @@ class Refinement(Estimate):
                 break
         else:
             self.failure = f"the estimate is not within the accuracy asked for after {_ROUNDS} refinements"
-        if self.stiffer is not None and self.solves.restart is None:
+        if self.stiffer is not None and self.restart is None:
             self.to_come = 1
             try:
-                self._penalty(self.solves.on_mesh(self.base.mesh, self.base.states, stiffer=self.stiffer))
+                self._penalty(self._on_mesh(self.base.mesh, self.base.states, stiffer=self.stiffer))
             except (StepFailed, GeometryError) as error:
                 if isinstance(error, Interrupted):
                     raise
@@ -198,7 +210,7 @@ class Refinement(Estimate):
         """Return how errors were found, ready for JSON; collective."""
         step_scale = self._step_scale(self.refinements.get("steps", 0))
         met = {"reached": self._met and not self.failure, "step_scale": step_scale}
-        return super().summary() | met | self.solves.cost()
+        return super().summary() | met
 
     def _shares(self, name: str, error: float) -> dict[str, float]:
         if not self.asked:
@@ -208,16 +220,18 @@ class Refinement(Estimate):
     def _halve(self, key: str) -> None:
         """Halve a mesh parameter, record what that changes, and go on from there."""
         if key == "steps" and not self.parameters[key].changes:
-            self._record(key, self.solves.with_steps(self._step_scale(-1)), self.solves.found[0])
+            self._record(key, self._with_steps(self._step_scale(-1)), self.found[0])
             return
         self.refinements[key] += 1
         if key == "steps":
-            finer = self.solves.with_steps(self._step_scale(self.refinements[key]))
+            finer = self._with_steps(self._step_scale(self.refinements[key]))
             self._record(key, self._stepped, finer)
             self._stepped = finer
-            self.base = self.solves.on_mesh(self.base.mesh, {**self.base.states, **finer.states})
+            self.base = self._on_mesh(self.base.mesh, {**self.base.states, **finer.states})
             return
-        finer = self._on_mesh(self.refinements)
+        first, numbers = self.model.mesh, self.refinements.items()
+        sizes = {size: getattr(first, size) / 2**n for each, n in numbers for size in _SIZES.get(each, ())}
+        finer = self._on_mesh(first.model_copy(update=sizes), self.base.states, True)
         self._record(key, self.base, finer)
         self.base = finer
 
@@ -230,11 +244,51 @@ class Refinement(Estimate):
                     f"halving {key}: {counted(now, 'ridge')} in contact at {WORDS[name]} instead of {before}"
                 )
 
-    def _on_mesh(self, refinements: Mapping[str, int]) -> Solve:
-        """Return the states in use on the scene's mesh with sizes halved so often."""
-        first = self.model.mesh
-        sizes = {size: getattr(first, size) / 2**n for key, n in refinements.items() for size in _SIZES.get(key, ())}
-        return self.solves.on_mesh(first.model_copy(update=sizes), self.base.states, True)
+    def _on_mesh(
+        self, mesh: MeshSize, states: Mapping[str, State], views: bool = False, stiffer: Formulation | None = None
+    ) -> Solve:
+        """Return states on a mesh of other element sizes; collective; see :func:`solve_again`.
+
+        Raises:
+            GeometryError: the mesh needs too much memory.
+            StepFailed: a state was not found.
+        """
+        self._pause()
+        return self._keep(solve_again(self.model.changed(mesh=mesh), states, self._comm, views, stiffer))
+
+    def _with_steps(self, step_scale: float) -> Solve:
+        """Return normal contact on the first mesh from a path whose largest steps have another scale; collective.
+
+        Raises:
+            StepFailed: the path was lost, or needs more of the model (:attr:`restart`).
+        """
+        numerics = self.model.numerics.model_copy(update={"step_scale": step_scale})
+        loads = loads_to_normal_contact(self.model.loads)
+        model = self.model.changed(mesh=self.found[0].mesh, loads=loads, numerics=numerics)
+        self._pause()
+        found = follow(model, self._comm)
+        if isinstance(found, RestartRequired):
+            more = self.model.changed(mesh=found.model.mesh, options=found.model.options)
+            self.restart = replace(found, model=more)
+            raise StepFailed(found.reason)
+        return self._keep(found)
+
+    def _keep(self, solve: Solve) -> Solve:
+        self.found.append(solve)
+        m = solve.mesh
+        self._show(
+            f"states on another mesh: facets {m.contact * 1e6:.4g} µm, growth {m.growth:.3g}, "
+            f"junctions {m.interface * 1e6:.4g} µm, receptors {m.receptor * 1e6:.4g} µm: "
+            f"{solve.unknowns} unknowns, {solve.factorisations} factorisations"
+        )
+        return solve
+
+    def least(self) -> float:
+        """Return the processor time (s) of this rank of the last solve on another mesh; 0 where none was made.
+
+        Those to come have no larger elements, and take as much at least, about.
+        """
+        return next((s.processor_seconds for s in reversed(self.found) if s.mesh != self.found[0].mesh), 0.0)
 
     def _step_scale(self, refinements: int) -> float:
         return self.model.numerics.step_scale * 0.5**refinements

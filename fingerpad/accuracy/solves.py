@@ -1,30 +1,123 @@
-"""The states of a path solved for again: on other meshes, with other steps, over a stiffer screen; and their cost."""
+"""The named states of a path: kept as it goes, and solved for again on other meshes and over a stiffer screen."""
 
+import math
+import time
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from mpi4py import MPI
-from numpy.typing import NDArray
 
-from fingerpad.accuracy.states import Solve, State, StateRecorder, contact_ends, edge_places, together
+from fingerpad.accuracy.states import Solve, State, contact_ends, edge_places, together
 from fingerpad.model.cautions import adhering, lost
 from fingerpad.model.checks import FingerExceeded
-from fingerpad.model.finger import Step
+from fingerpad.model.finger import Step, both_sides
 from fingerpad.model.options import FingerModel
 from fingerpad.model.record import Viewer
-from fingerpad.model.schedule import loads_to_normal_contact
 from fingerpad.model.simulation import RestartRequired, Simulation
-from fingerpad.results.states import SLIDE_ON, WORDS
-from geometry.parameters import MeshSize
-from geometry.profiles import GeometryError, Profiles
+from fingerpad.results.fields import View
+from fingerpad.results.states import SLIDE_ON, WORDS, before_sliding
+from geometry.profiles import Profiles
 from variational.contact.formulation import Formulation
+from variational.output import Receptors
 from variational.solvers.continuation import Attempt, StepFailed
+from variational.solvers.state_snapshot import take_snapshot
 from variational.solvers.transfer import restore
+from variational.state import ContactState
 
-Array = NDArray[np.float64]
 _JUMPED = "skin jumped on the way, and roundoff (the number of ranks) may have chosen this state among others"
+
+
+class StateRecorder:
+    """Keeps the named states of a path as it goes; of full slips the last one that was held."""
+
+    def __init__(self, simulation: Simulation) -> None:
+        """Find the Merkel sites of the ridges that can touch."""
+        self._simulation = simulation
+        self._start = time.process_time()
+        finger = simulation.finger
+        ridges, profiles = finger.problem.surface.ridge_numbers, finger.profiles
+        sites = profiles.merkel_sites()[[profiles.ridges.index(j) for j in ridges]]
+        self._sites = Receptors(finger.problem, sites)
+        self._begun: State | None = None  # the last full slip, held or not
+        self.states: dict[str, State] = {}
+        self.views: dict[str, View] = {}
+
+    def record(self, step: Step) -> None:
+        """Record an accepted step; collective."""
+        state = step.state
+        if not step.touches and (step.ends or not math.isnan(state.time)):
+            self._normal_contact(state)
+        if state.slip_began == state.step:
+            self._begun = self._state(1 if state.f_t >= 0 else -1)
+        if state.slip_held and self._begun is not None:
+            self.states["full_slip"] = self._begun
+
+    def _normal_contact(self, state: ContactState) -> None:
+        states = self._simulation.states
+        if state.ridges_in_contact > 0 and len(before_sliding(states)) == len(states):
+            self.keep("charged")
+            if not any(each.voltage for each in states):
+                self.states["uncharged"] = self.states["charged"]
+
+    def kept(self) -> dict[str, Any]:
+        """Return what another process needs to go on with the path."""
+        return {"states": self.states, "begun": self._begun}
+
+    def resume(self, kept: Mapping[str, Any]) -> None:
+        """Go on from what another process kept."""
+        self.states, self._begun = dict(kept["states"]), kept["begun"]
+        pair = [self.states[name] for name in ("uncharged", "charged") if name in self.states]
+        if len(pair) == 2 and pair[0].state.step == pair[1].state.step:  # at 0 V one state
+            self.states["uncharged"] = pair[1]
+
+    def keep(self, name: str, slips: bool | None = None) -> None:
+        """Keep the present state; collective.
+
+        Args:
+            name: of the state.
+            slips: whether it is a full slip; by default one of that name is.
+        """
+        direction = 1 if self._simulation.finger.solver.reaction[0] <= 0 else -1
+        self.states[name] = self._state(direction * (name == "full_slip" if slips is None else slips))
+
+    def examine(self, name: str) -> None:
+        """Add the stability of the present state, which was kept; collective.
+
+        Args:
+            name: of the state.
+
+        Raises:
+            StepFailed: the stability cannot be examined.
+        """
+        kept, checked = self.states[name], self._simulation.checks.check(name)
+        self.states[name] = replace(kept, state=checked.of(kept.state))
+
+    def _state(self, direction: int) -> State:
+        f = self._simulation.finger
+        loads = f.ridge_loads()
+        peaks = f.observer.highest_pressures(f.continuation.surface_state)
+        if not f.options.both_halves:
+            peaks = both_sides(peaks)
+        by_ridge = np.zeros((3, f.profiles.finger.ridge_count))
+        by_ridge[:, np.array(f.ridges) + by_ridge.shape[1] // 2] = loads.length, loads.f_friction, peaks
+        lengths, frictions, peaks = by_ridge
+        sed = {j: float(density) for j, density in zip(f.problem.surface.ridge_numbers, self._sites.sed(), strict=True)}
+        if not f.options.both_halves:
+            sed |= {-j: density for j, density in sed.items()}
+        present = self._simulation.present(loads).state
+        snapshot = take_snapshot(f.coupling, f.continuation.surface_state)
+        facet = f.size.edge if self._simulation.model.edges else f.contact_size
+        return State(snapshot, direction, present, lengths, frictions, peaks, sed, facet)
+
+    def solve(self) -> Solve:
+        """Return what was kept."""
+        f, seconds = self._simulation.finger, time.process_time() - self._start
+        alike = self.states.get("uncharged") is self.states.get("charged")
+        states = {name: state for name, state in self.states.items() if name != "uncharged" or not alike}
+        counts = f.solver.counts
+        return Solve(states, f.size, f.unknowns, counts.factorisations, seconds, counts.newton, views=self.views)
 
 
 class StateSolver(Simulation):
@@ -70,8 +163,8 @@ class StateSolver(Simulation):
             steady = not state.direction or self._slip.slides_on(name, state.direction)
         except FingerExceeded as error:
             raise StepFailed(f"{again}: {error}") from error
-        if self._restart is not None:
-            raise StepFailed(f"{again}: {self._restart.reason}")
+        if self.restart is not None:
+            raise StepFailed(f"{again}: {self.restart.reason}")
         if not steady:
             raise StepFailed(f"{again}, is not steady")
         return attempt
@@ -104,11 +197,11 @@ class StateSolver(Simulation):
         finger.check_balance(loads, name)
         self.states.append(self._slip.placed(self.states, self.present(loads).state, probe=False))
         try:
-            self._restart = self._zone_exceeded(loads)
+            self.restart = self._zone_exceeded(loads)
         except FingerExceeded as error:
             raise StepFailed(f"{name}: {error}") from error
-        if self._restart is not None:
-            raise StepFailed(f"{name}: {self._restart.reason}")
+        if self.restart is not None:
+            raise StepFailed(f"{name}: {self.restart.reason}")
         return attempt
 
 
@@ -209,110 +302,3 @@ def _solve(
     simulation.checks.free()
     stiff = over.solve() if over.states and not soft else None
     return replace(recorder.solve(), stiffer=stiff, soft=soft, doubts=tuple(simulation.doubts))
-
-
-class Solves:
-    """All solves of a path's states, the path's first.
-
-    Attributes:
-        model: of the path.
-        show: prints a line.
-        found: the solves, in order.
-        restart: what a path with other steps turned out to need, if anything.
-    """
-
-    def __init__(
-        self, model: FingerModel, path: Solve, comm: MPI.Comm, show: Callable[[str], None], pause: Callable[[], None]
-    ) -> None:
-        """Start with the path's states; ``pause`` is called before each solve and may raise to stop."""
-        self.model, self.show = model, show
-        self._comm, self._pause = comm, pause
-        self.found = [path]
-        self.restart: RestartRequired | None = None
-
-    def on_mesh(
-        self, mesh: MeshSize, states: Mapping[str, State], views: bool = False, stiffer: Formulation | None = None
-    ) -> Solve:
-        """Return states on a mesh of other element sizes; collective; see :func:`solve_again`.
-
-        Raises:
-            GeometryError: the mesh needs too much memory.
-            StepFailed: a state was not found.
-        """
-        self._pause()
-        return self._keep(solve_again(self.model.changed(mesh=mesh), states, self._comm, views, stiffer))
-
-    def with_steps(self, step_scale: float) -> Solve:
-        """Return normal contact on the first mesh from a path whose largest steps have another scale; collective.
-
-        Raises:
-            StepFailed: the path was lost, or needs more of the model (:attr:`restart`).
-        """
-        numerics = self.model.numerics.model_copy(update={"step_scale": step_scale})
-        loads = loads_to_normal_contact(self.model.loads)
-        model = self.model.changed(mesh=self.found[0].mesh, loads=loads, numerics=numerics)
-        self._pause()
-        found = follow(model, self._comm)
-        if isinstance(found, RestartRequired):
-            more = self.model.changed(mesh=found.model.mesh, options=found.model.options)
-            self.restart = replace(found, model=more)
-            raise StepFailed(found.reason)
-        return self._keep(found)
-
-    def on_coarser_path(self, on_step: Callable[["Simulation", Step, float], None]) -> Solve:
-        """Return the named states of the whole path on elements twice as large; collective; see :func:`follow`.
-
-        The loads are gone through again where more of the model turns out to matter on that mesh.
-
-        Raises:
-            GeometryError: there is no such mesh.
-            StepFailed: the path was lost, or ``on_step`` stopped it.
-        """
-        mesh = self.model.coarser(self.model.mesh)
-        if mesh.contact == self.model.mesh.contact:
-            raise GeometryError(f"the ridges have no larger elements than {mesh.contact * 1e6:.3g} µm")
-        found = follow(self.model.changed(mesh=mesh), self._comm, on_step)
-        while isinstance(found, RestartRequired):
-            self.show(f"on elements twice as large: {found.reason}; all loads again")
-            found = follow(found.model, self._comm, on_step)
-        self.found.append(found)
-        return found
-
-    def _keep(self, solve: Solve) -> Solve:
-        self.found.append(solve)
-        m = solve.mesh
-        self.show(
-            f"states on another mesh: facets {m.contact * 1e6:.4g} µm, growth {m.growth:.3g}, "
-            f"junctions {m.interface * 1e6:.4g} µm, receptors {m.receptor * 1e6:.4g} µm: "
-            f"{solve.unknowns} unknowns, {solve.factorisations} factorisations"
-        )
-        return solve
-
-    def doubts(self) -> list[str]:
-        """Return which states roundoff may have chosen among others, a sentence each."""
-        return [each for solve in self.found for each in solve.doubts]
-
-    def least(self) -> float:
-        """Return the processor time (s) of this rank of the last solve on another mesh; 0 where none was made.
-
-        Those to come have no larger elements, and take as much at least, about.
-        """
-        return next((s.processor_seconds for s in reversed(self.found) if s.mesh != self.found[0].mesh), 0.0)
-
-    def cost(self) -> dict[str, Any]:
-        """Return what each solve and all of them took, ready for JSON; collective."""
-        seconds = [float(np.sum(self._comm.allgather(solve.processor_seconds))) for solve in self.found]
-        return {
-            "solves": [
-                {
-                    "mesh": solve.mesh.model_dump(),
-                    "unknowns": solve.unknowns,
-                    "factorisations": solve.factorisations,
-                    "processor_seconds": spent,
-                }
-                for solve, spent in zip(self.found, seconds, strict=True)
-            ],
-            "factorisations": sum(solve.factorisations for solve in self.found),
-            "unknowns_times_factorisations": sum(s.unknowns * s.factorisations for s in self.found),
-            "processor_seconds": sum(seconds),
-        }

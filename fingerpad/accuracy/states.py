@@ -6,22 +6,16 @@ it, by some tenth of a facet to a third. So facets are small over that way.
 """
 
 import math
-import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fingerpad.model.finger import Step, both_sides
-from fingerpad.model.simulation import Simulation
 from fingerpad.results.fields import View
 from fingerpad.results.quantities import FRICTION, RESULTS, in_table
-from fingerpad.results.states import before_sliding
 from geometry.parameters import MeshSize
-from variational.output import Receptors
-from variational.solvers.state_snapshot import SkinState, StateSnapshot, take_snapshot
+from variational.solvers.state_snapshot import SkinState, StateSnapshot
 from variational.state import ContactState
 
 Array = NDArray[np.float64]
@@ -104,97 +98,6 @@ def quantities(name: str, state: State) -> dict[str, float]:
 def with_values(path: ContactState, final: State) -> ContactState:
     """Return a state as a path has it, with the results that it has on the final mesh; its errors are as before."""
     return replace(path, **{key: getattr(final.state, key) for key in (*RESULTS, "f_ext", "ridges", "mesh_contact")})
-
-
-class StateRecorder:
-    """Keeps the named states of a path as it goes; of full slips the last one that was held."""
-
-    def __init__(self, simulation: Simulation) -> None:
-        """Find the Merkel sites of the ridges that can touch."""
-        self._simulation = simulation
-        self._start = time.process_time()
-        finger = simulation.finger
-        ridges, profiles = finger.problem.surface.ridge_numbers, finger.profiles
-        sites = profiles.merkel_sites()[[profiles.ridges.index(j) for j in ridges]]
-        self._sites = Receptors(finger.problem, sites)
-        self._begun: State | None = None  # the last full slip, held or not
-        self.states: dict[str, State] = {}
-        self.views: dict[str, View] = {}
-
-    def record(self, step: Step) -> None:
-        """Record an accepted step; collective."""
-        state = step.state
-        if not step.touches and (step.ends or not math.isnan(state.time)):
-            self._normal_contact(state)
-        if state.slip_began == state.step:
-            self._begun = self._state(1 if state.f_t >= 0 else -1)
-        if state.slip_held and self._begun is not None:
-            self.states["full_slip"] = self._begun
-
-    def _normal_contact(self, state: ContactState) -> None:
-        states = self._simulation.states
-        if state.ridges_in_contact > 0 and len(before_sliding(states)) == len(states):
-            self.keep("charged")
-            if not any(each.voltage for each in states):
-                self.states["uncharged"] = self.states["charged"]
-
-    def kept(self) -> dict[str, Any]:
-        """Return what another process needs to go on with the path."""
-        return {"states": self.states, "begun": self._begun}
-
-    def resume(self, kept: Mapping[str, Any]) -> None:
-        """Go on from what another process kept."""
-        self.states, self._begun = dict(kept["states"]), kept["begun"]
-        pair = [self.states[name] for name in ("uncharged", "charged") if name in self.states]
-        if len(pair) == 2 and pair[0].state.step == pair[1].state.step:  # at 0 V one state
-            self.states["uncharged"] = pair[1]
-
-    def keep(self, name: str, slips: bool | None = None) -> None:
-        """Keep the present state; collective.
-
-        Args:
-            name: of the state.
-            slips: whether it is a full slip; by default one of that name is.
-        """
-        direction = 1 if self._simulation.finger.solver.reaction[0] <= 0 else -1
-        self.states[name] = self._state(direction * (name == "full_slip" if slips is None else slips))
-
-    def examine(self, name: str) -> None:
-        """Add the stability of the present state, which was kept; collective.
-
-        Args:
-            name: of the state.
-
-        Raises:
-            StepFailed: the stability cannot be examined.
-        """
-        kept, checked = self.states[name], self._simulation.checks.check(name)
-        self.states[name] = replace(kept, state=checked.of(kept.state))
-
-    def _state(self, direction: int) -> State:
-        f = self._simulation.finger
-        loads = f.ridge_loads()
-        peaks = f.observer.highest_pressures(f.continuation.surface_state)
-        if not f.options.both_halves:
-            peaks = both_sides(peaks)
-        by_ridge = np.zeros((3, f.profiles.finger.ridge_count))
-        by_ridge[:, np.array(f.ridges) + by_ridge.shape[1] // 2] = loads.length, loads.f_friction, peaks
-        lengths, frictions, peaks = by_ridge
-        sed = {j: float(density) for j, density in zip(f.problem.surface.ridge_numbers, self._sites.sed(), strict=True)}
-        if not f.options.both_halves:
-            sed |= {-j: density for j, density in sed.items()}
-        present = self._simulation.present(loads).state
-        snapshot = take_snapshot(f.coupling, f.continuation.surface_state)
-        facet = f.size.edge if self._simulation.model.edges else f.contact_size
-        return State(snapshot, direction, present, lengths, frictions, peaks, sed, facet)
-
-    def solve(self) -> Solve:
-        """Return what was kept."""
-        f, seconds = self._simulation.finger, time.process_time() - self._start
-        alike = self.states.get("uncharged") is self.states.get("charged")
-        states = {name: state for name, state in self.states.items() if name != "uncharged" or not alike}
-        counts = f.solver.counts
-        return Solve(states, f.size, f.unknowns, counts.factorisations, seconds, counts.newton, views=self.views)
 
 
 def together(solves: Sequence[Solve]) -> Solve:

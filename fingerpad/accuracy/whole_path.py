@@ -22,15 +22,17 @@ from functools import partial
 from typing import Any
 
 import numpy as np
+from mpi4py import MPI
 from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
 from fingerpad.accuracy.estimate import Estimate
 from fingerpad.accuracy.richardson import FEW_FACETS, of_two_paths
-from fingerpad.accuracy.solves import Solves
+from fingerpad.accuracy.solves import follow
 from fingerpad.accuracy.states import Solve
 from fingerpad.model.finger import Step
-from fingerpad.model.simulation import Simulation
+from fingerpad.model.options import FingerModel
+from fingerpad.model.simulation import RestartRequired, Simulation
 from fingerpad.model.stimuli import SiteStimuli
 from fingerpad.results.interrupt import Interrupted
 from fingerpad.results.over_time import without_parts_of_jumps
@@ -57,21 +59,30 @@ class WholePath(Estimate):
     """Errors of a path's named states, and of the path over time, from the path on elements twice as large.
 
     Attributes:
-        solves: all that was solved.
         over_time: largest difference of the two paths over time by quantity, over its largest amount; empty where no
             load takes time.
     """
 
-    def __init__(self, solves: Solves, states: Sequence[ContactState], on_step: Callable[[float], None]) -> None:
+    def __init__(
+        self,
+        model: FingerModel,
+        path: Solve,
+        comm: MPI.Comm,
+        show: Callable[[str], None],
+        states: Sequence[ContactState],
+        on_step: Callable[[float], None],
+    ) -> None:
         """Follow nothing yet.
 
         Args:
-            solves: the path's alone.
+            model: of the path.
+            path: its named states.
+            comm: communicator of the meshes.
+            show: prints a line.
             states: accepted states of the path.
             on_step: called with the part of the coarser path that is done; may raise to stop.
         """
-        super().__init__(solves.model, solves.found[0], solves.show)
-        self.solves = solves
+        super().__init__(model, path, comm, show)
         self._states, self._on_step = states, on_step
         self._simulation: Simulation | None = None  # on the coarser mesh
         self._stimuli: SiteStimuli | None = None
@@ -79,19 +90,19 @@ class WholePath(Estimate):
         self.over_time: dict[str, float] = {}
         self._errors: dict[str, float] = {}  # of these, likewise
 
-    def run(self) -> None:
-        """Follow the path on the coarser mesh, and estimate; collective.
+    def run(self) -> RestartRequired | None:
+        """Follow the path on the coarser mesh, and estimate, which needs nothing more of the model; collective.
 
         Raises:
             Interrupted: ``on_step`` stopped the run.
         """
         try:
-            coarse = self.solves.on_coarser_path(self._accepted)
+            coarse = self._on_coarser_path()
         except Interrupted:
             raise
         except (StepFailed, GeometryError) as error:
             self._note(f"discretisation errors could not be estimated: on elements twice as large, {error}")
-            return
+            return None
         self._compare(self._comparable(coarse), self.base, short=False)
         self._few_facets()
         self._report()
@@ -104,13 +115,33 @@ class WholePath(Estimate):
                 f"Over time, friction has an estimated discretisation error of up to {part} % of its largest value, "
                 "from the path on elements twice as large."
             )
+        return None
+
+    def _on_coarser_path(self) -> Solve:
+        """Return the named states on elements twice as large; collective.
+
+        The loads are gone through again where more of the model turns out to matter on that mesh.
+
+        Raises:
+            GeometryError: there is no such mesh.
+            StepFailed: the path was lost, or ``on_step`` stopped it.
+        """
+        mesh = self.model.coarser(self.model.mesh)
+        if mesh.contact == self.model.mesh.contact:
+            raise GeometryError(f"the ridges have no larger elements than {mesh.contact * 1e6:.3g} µm")
+        found = follow(self.model.changed(mesh=mesh), self._comm, self._accepted)
+        while isinstance(found, RestartRequired):
+            self._show(f"on elements twice as large: {found.reason}; all loads again")
+            found = follow(found.model, self._comm, self._accepted)
+        self.found.append(found)
+        return found
 
     def summary(self) -> dict[str, Any]:
         """Return how errors were found, ready for JSON; collective."""
         over_time = {
             name: {"difference": difference, "error": self._errors[name]} for name, difference in self.over_time.items()
         }
-        return super().summary() | self.solves.cost() | ({"over_time": over_time} if over_time else {})
+        return super().summary() | ({"over_time": over_time} if over_time else {})
 
     def _accepted(self, simulation: Simulation, step: Step, done: float) -> None:
         """Keep an accepted state of the coarser path; collective."""

@@ -20,8 +20,7 @@ COMMANDS = {
     "run": "contact and friction of a finger that is pressed, charged and slid: tables, pictures, fields",
     "sweep": "a scene over values of its keys: a table; a stopped sweep continues, and no run is repeated",
     "report": "a run or a sweep as one HTML file; a run's animation or spikes; the closed form as a page with sliders",
-    "compare": "models of a scene side by side: their results and their cost",
-    "compare-data": "tables of measurements beside a run or a sweep: misfit as a ratio, picture",
+    "compare": "tables of measurements beside a run or a sweep: misfit as a ratio, picture",
     "check": "what a run contains, omits and costs, with a picture of its mesh, or the mesh for gmsh; solves nothing",
     "solve": "the voltage, coating or other key at which friction has a given value, by the closed form, at once",
     "drive": "friction over the period of an alternating voltage, its spectrum, and whether it is felt, in a second",
@@ -29,9 +28,9 @@ COMMANDS = {
     "topography": "roughness of a scene from a measured height map",
     "params": "every key of a scene: unit, default, range and meaning",
 }
-_BESIDE = {"compare-data": "compare", "microscale": "roughness", "topography": "roughness"}
+_BESIDE = {"solve": "estimate", "microscale": "roughness", "topography": "roughness"}
 """Modules of the commands that have none of their own name."""
-_COLLECTIVE = ("run", "compare")  # use all ranks; the others are answered by rank 0
+_COLLECTIVE = ("run",)  # use all ranks; the others are answered by rank 0
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -110,7 +109,7 @@ def _command(words: list[str]) -> int:
         return 0
     own = importlib.import_module(f"fingerpad.cli.{_BESIDE.get(name, name)}")
     try:
-        return int(getattr(own, name.replace("-", "_") if name in _BESIDE else "main")(words[1:]))
+        return int(getattr(own, name if name in _BESIDE else "main")(words[1:]))
     except SystemExit as stop:  # of --help
         return int(stop.code or 0)
 

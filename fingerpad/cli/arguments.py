@@ -30,7 +30,7 @@ class Kind(NamedTuple):
 
     words: str
     endings: tuple[str, ...]
-    """Of their names; the first one's letters stand for the file in the help."""
+    """Of their names; the first is shown in the help."""
     begins: str = ""
     """Of their text; a file that begins otherwise is a user's, and is not replaced."""
 
@@ -42,12 +42,7 @@ class Parser(argparse.ArgumentParser):
     """A parser that refuses by :class:`SceneError` and prints on rank 0 alone."""
 
     def __init__(self, command: str, examples: str) -> None:
-        """Start with the options that all subcommands have.
-
-        Args:
-            command: name of the subcommand; its description is that of :data:`fingerpad.cli.COMMANDS`.
-            examples: command lines, one a line.
-        """
+        """Describe a command of :data:`fingerpad.cli.COMMANDS`, with examples of command lines, one a line."""
         lines = "\n".join(f"  {line.strip()}" for line in examples.strip().splitlines())
         what = COMMANDS.get(command, "")
         super().__init__(
@@ -60,11 +55,7 @@ class Parser(argparse.ArgumentParser):
         self._written: dict[str, Kind] = {}  # files, by the names of their values
 
     def error(self, message: str) -> NoReturn:
-        """Refuse what argparse refuses, without its usage.
-
-        Raises:
-            SceneError: the message.
-        """
+        """Raise :class:`SceneError` where argparse refuses, without its usage."""
         raise SceneError(f"command line: {message}")
 
     def _print_message(self, message: str, file: Any = None) -> None:
@@ -73,12 +64,10 @@ class Parser(argparse.ArgumentParser):
 
     def add_scene(self) -> None:
         """Add a scene file and values for its keys."""
-        self.add_argument(
-            "scene", nargs="?", type=path, metavar="SCENE", help="scene in TOML (default: press, charge, slide)"
-        )
-        self.add_argument(
-            "--set", action="append", default=[], metavar="KEY=VALUE", help="a key of the scene; one --set for each key"
-        )
+        what = "scene in TOML (default: press, charge, slide)"
+        self.add_argument("scene", nargs="?", type=path, metavar="SCENE", help=what)
+        what = "a key of the scene; one --set for each key"
+        self.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help=what)
         what = "a folder of your own from which laws may be imported; may be given again"
         self.add_argument("--laws", action="append", default=[], type=path, metavar="FOLDER", help=what)
 
@@ -111,7 +100,7 @@ class Parser(argparse.ArgumentParser):
             option: as ``--csv``.
             kind: of the file.
             what: for the help.
-            default: name of the file; without it, no file is written by default.
+            default: name of the file; by default none is written.
             dest: name of the value; by default that of the option.
         """
         name, chosen = dest or option.lstrip("-"), None if default is None else Path(default)
@@ -161,11 +150,7 @@ class Parser(argparse.ArgumentParser):
 
 
 def scene_of(args: argparse.Namespace, meshed: bool = True) -> Scene:
-    """Return the scene that options of :meth:`Parser.add_scene` ask for.
-
-    Args:
-        args: the parsed options.
-        meshed: whether its finger must be one that can be built and meshed.
+    """Return the scene of the options of :meth:`Parser.add_scene`, by default one whose finger can be meshed.
 
     Raises:
         SceneError: the first key at fault.
@@ -205,11 +190,7 @@ def several(args: argparse.Namespace, scene: Scene, key: str) -> list[float]:
 
 
 def refuse_twice(args: argparse.Namespace, key: str, option: str) -> None:
-    """Refuse a key of the scene that ``--set`` gives beside an option of its own.
-
-    Raises:
-        SceneError: both are given.
-    """
+    """Raise :class:`SceneError` where ``--set`` gives a key of the scene beside an option of its own."""
     given = getattr(args, option.lstrip("-").replace("-", "_")) is not None
     if given and any(override(text)[0] == key for text in args.set):
         raise SceneError(f"--set {key} is given and {option} too; give one of the two")
@@ -263,11 +244,10 @@ def path(text: str) -> Path:
 
 def positive(text: str) -> int:
     """Return a positive whole number."""
-    if not re.fullmatch(r"0*[1-9]\d{0,17}", text):
-        raise argparse.ArgumentTypeError(
-            f"{clip(text) or 'an empty text'} is not allowed; it must be a whole number greater than 0"
-        )
-    return int(text)
+    if re.fullmatch(r"0*[1-9]\d{0,17}", text):
+        return int(text)
+    given = clip(text) or "an empty text"
+    raise argparse.ArgumentTypeError(f"{given} is not allowed; it must be a whole number greater than 0")
 
 
 def quantities(option: str, text: str, unit: str) -> list[float]:
@@ -276,9 +256,8 @@ def quantities(option: str, text: str, unit: str) -> list[float]:
     Raises:
         SceneError: one of them is no such number.
     """
-    given = ranges.read(option, text)
     try:
-        found = [to_si(each, unit) if isinstance(each, str) else float(each) for each in given]
+        found = [to_si(v, unit) if isinstance(v, str) else float(v) for v in ranges.read(option, text)]
     except ValueError as error:
         raise SceneError(f"{option} is {clip(text)}; {error}") from None
     if not all(0 < value < math.inf for value in found):
@@ -288,10 +267,6 @@ def quantities(option: str, text: str, unit: str) -> list[float]:
 
 def refuse_file(file: Path, kind: Kind) -> None:
     """Refuse a file that cannot be written, or that no command of this kind has written; nothing is made.
-
-    Args:
-        file: to be written.
-        kind: what it is to be.
 
     Raises:
         SceneError: its folder is not there or read-only, it is no ordinary file, read-only, or of another kind.

@@ -8,7 +8,7 @@ import numpy as np
 
 from fingerpad.cli import output
 from fingerpad.cli.arguments import Kind, Parser, echo, scene_of
-from fingerpad.model.cautions import breakdown_ahead, on_scene
+from fingerpad.model.cautions import examine
 from fingerpad.model.options import COARSER, FingerModel, ModelOptions, by_rule, memory, plan, refuse_mesh, unknowns
 from fingerpad.model.section import Section, section, write
 from fingerpad.reduced import cylinders
@@ -20,7 +20,7 @@ from fingerpad.results.terminal import about
 from fingerpad.scene import Load, Scene, SceneError
 from fingerpad.scene.loads import ways
 from fingerpad.scene.messages import counted
-from fingerpad.scene.remarks import finger_in_words, leakage, used
+from fingerpad.scene.remarks import finger_in_words, used
 from fingerpad.scene.viscosity import elastic, viscous_layers
 from geometry import tags
 from geometry.profiles import GeometryError
@@ -57,8 +57,7 @@ def main(argv: Sequence[str]) -> int:
         ("Mesh", _size(scene, mesh)),
         ("Omitted", (f"{omission.what}: {omission.reason}" for omission in needed.omitted)),
     ):
-        shown = list(lines) or ["nothing"]
-        echo("\n".join([title, *(f"  {line}" for line in shown)]))
+        echo("\n".join([title, *(f"  {line}" for line in list(lines) or ["nothing"])]))
     echo(_picture(scene, args.out, mesh))
     if args.mesh:
         echo(f"Mesh written: {args.mesh}, {len(write(scene, args.mesh).triangles)} triangles of the whole finger")
@@ -83,13 +82,19 @@ def _mesh(scene: Scene, needed: ModelOptions) -> Section | None:
     return found
 
 
-def _verdict(scene: Scene) -> str:
-    """Return whether the scene can be run, that it may not slip fully, and what is not known of loads never tried."""
+def _along(scene: Scene) -> Iterator[tuple[Load, float | None, float, float]]:
+    """Yield each load, how far it moves the bone (m) where that is known, and its force (N/m) and peak voltage (V)."""
     force = voltage = 0.0
-    for load in scene.loads():
+    for _, load, moved in ways(scene.loads()):
         force = load.f_ext if load.f_ext is not None else force
         voltage = load.wave.peak if load.wave is not None else voltage if load.level is None else load.level
-        tried = REGIONS[0]
+        yield load, moved, force, voltage
+
+
+def _verdict(scene: Scene) -> str:
+    """Return whether the scene can be run, that it may not slip fully, and what is not known of loads never tried."""
+    tried = REGIONS[0]
+    for load, _, force, voltage in _along(scene):
         if not (within(force, tried.ranges["f_ext"]) and within(voltage, tried.ranges["voltage"])):
             return (
                 f"The scene is valid; whether its loads can be reached is not known: {load.name} has {force:g} N/m and "
@@ -126,15 +131,12 @@ def _aims(load: Load) -> Iterator[str]:
 
 
 def _model(scene: Scene, needed: ModelOptions) -> Iterator[str]:
-    yield from (*finger_in_words(scene), *on_scene(scene), *leakage(scene), *too_short(scene), *_adhering(scene))
-    yield from breakdown_ahead(scene)
-    if caution := scene.contact.law.caution:
-        yield caution
+    yield from (*finger_in_words(scene), *map(str, examine("scene", scene) + examine("note", scene)))
+    yield from (*too_short(scene), *_adhering(scene), *map(str, examine("load", scene) + examine("law", scene)))
     if scene.geometry.file is None:
-        size = scene.mesh
-        sizes = {"in contact": size.contact, "at the Merkel sites": size.receptor, "elsewhere at most": size.coarsest}
-        if not needed.receptors:
-            del sizes["at the Merkel sites"]
+        sizes = {"in contact": scene.mesh.contact}
+        sizes |= {"at the Merkel sites": scene.mesh.receptor} if needed.receptors else {}
+        sizes |= {"elsewhere at most": scene.mesh.coarsest}
         yield f"elements of {', '.join(f'{value * 1e6:.4g} µm {where}' for where, value in sizes.items())}"
     if scene.accuracy is not None:
         yield "finer meshes follow, to the accuracy asked for"
@@ -153,10 +155,8 @@ def too_short(scene: Scene) -> Iterator[str]:
     Friction and number of ridges are those of the closed form, with viscous layers at their lasting stiffness. There
     is none where the way of the bone is not known.
     """
-    force = voltage = place = farthest = 0.0
-    for _, load, moved in ways(scene.loads()):
-        force = load.f_ext if load.f_ext is not None else force
-        voltage = load.wave.peak if load.wave is not None else voltage if load.level is None else load.level
+    place = farthest = 0.0
+    for load, moved, force, voltage in _along(scene):
         if moved is None or load.bone_height is not None:
             return
         place += moved
@@ -197,27 +197,23 @@ def _size(scene: Scene, mesh: Section | None) -> Iterator[str]:
     if mesh is None:
         yield "not made, since gmsh is not installed"
         return
-    own = scene.geometry.file is not None
+    own, of = scene.geometry.file is not None, scene.geometry.ridge_count
     number = unknowns(len(mesh.points), len(mesh.triangles), scene.numerics.element)
     yield f"{len(mesh.triangles)} triangles of element {scene.numerics.element}, {number} unknowns"
     if own:
-        yield f"the shortest edge is {_um(mesh.shortest)}, the lowest point {_um(mesh.lowest[1])} above the screen"
+        shortest, lowest = mesh.shortest * 1e6, mesh.lowest[1] * 1e6
+        yield f"the shortest edge is {shortest:.3g} µm, the lowest point {lowest:.3g} µm above the screen"
         how = "as the file has them"
     elif scene.mesh.touching_half_arc is not None:
         how = "as mesh.touching_half_arc gives"
     else:
         how = "by a rule of thumb; a run takes more where they come near"
-    of = scene.geometry.ridge_count
     ridges = counted(mesh.ridges, "ridge") if own else f"{mesh.ridges} of {counted(of, 'ridge')}"
     yield f"{ridges} can touch, {how}"
-    allowed = f"of the {scene.numerics.memory * 1e-9:.3g} GB allowed"
-    allowed = "for which a mesh of a file is not refused" if own else allowed
+    most = f"of the {scene.numerics.memory * 1e-9:.3g} GB allowed"
+    allowed = "for which a mesh of a file is not refused" if own else most
     yield f"about {about(memory(number) * 1e-9)} GB of memory, {allowed}"
     yield "time: a run prints what is left of its path; measured times are in docs/performance.md"
-
-
-def _um(length: float) -> str:
-    return f"{length * 1e6:.3g} µm"
 
 
 def _picture(scene: Scene, folder: Path, mesh: Section | None) -> str:

@@ -1,4 +1,4 @@
-"""Results side by side: ``fingerpad compare`` of several models, ``fingerpad compare-data`` with measured tables."""
+"""Tables of measurements beside results: ``fingerpad compare``."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -8,32 +8,21 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fingerpad.cli import output
-from fingerpad.cli.arguments import Parser, echo, path, scene_of
-from fingerpad.launcher import raising_at_ctrl_c
-from fingerpad.reduced.model import STATES, Model
-from fingerpad.reduced.registry import MODELS
-from fingerpad.results.files import below, check_folder
-from fingerpad.results.quantities import QUANTITIES, RESULTS, Output, cell, plus_minus_of
-from fingerpad.results.result import Result
-from fingerpad.results.states import WORDS, called
-from fingerpad.runs.context import RunContext
-from fingerpad.runs.solve import solved
+from fingerpad.cli.arguments import Parser, echo, path
+from fingerpad.results.quantities import Output
+from fingerpad.results.states import WORDS
 from fingerpad.scene.messages import SceneError, clip, ends
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
-    from fingerpad.measurements.computed import Computed
+    from fingerpad.measurements.compare import Computed
 
-_MODELS = """
-    fingerpad compare --set voltage=100
-    fingerpad compare scene.toml --model cylinders full --out results/compare
-"""
-_DATA = """
-    fingerpad compare-data mine.csv --sweep results/sweep --out mine.png --csv compared.csv
-    fingerpad compare-data data/measured/ayyildiz2018.csv --run results/mine
-    fingerpad compare-data lab.csv --column "Fn=force (N)" --column "CoF=friction (1)" --run results/mine
+_EXAMPLES = """
+    fingerpad compare mine.csv --sweep results/sweep --out mine.png --csv compared.csv
+    fingerpad compare data/measured/ayyildiz2018.csv --run results/mine
+    fingerpad compare lab.csv --column "Fn=force (N)" --column "CoF=friction (1)" --run results/mine
 """
 _ABOUT = ("table", "state", "quantity", "unit", "force_unit")  # of a row in a file, which has rows of every table
 _VALUES = ("force", "voltage", "measured", "spread", "mu_0", "computed", "error", "difference", "relative_difference")
@@ -42,74 +31,9 @@ _UNITS = {"m": "mm", "m^2": "mm²", "1": ""}  # of the screen, where they are no
 _IN_LEGEND = 4  # curves in the legend of a picture
 
 
-# -- models --------------------------------------------------------------------------------------------
 def main(argv: Sequence[str]) -> int:
-    """Compare models; return the exit code."""
-    parser = Parser("compare", _MODELS)
-    parser.add_scene()
-    parser.add_out("results", "folder of the full run", quiet="table")
-    parser.add_argument(
-        "--model",
-        nargs="+",
-        choices=MODELS,
-        default=list(MODELS),
-        help="models to compare (default: all; full takes minutes)",
-    )
-    args = parser.read(argv, petsc=True)
-    scene = scene_of(args)
-    check_folder(args.out)
-    from fingerpad.startup import start
-
-    start(args.petsc)
-    import fingerpad.runs.full  # noqa: F401  # before Ctrl-C raises
-
-    def answer_or_refusal(model: Model) -> Result:
-        try:
-            folder = below(args.out, model.name) if model.path else None
-            return solved(scene, model, RunContext(folder, lines=not args.quiet, bar=not args.quiet))
-        except SceneError as error:
-            return Result(scene, model.name, None, None, None, failure=str(error))
-
-    with raising_at_ctrl_c():
-        results = [answer_or_refusal(model) for name, model in MODELS.items() if name in args.model]
-    echo(table(results))
-    return max(1 if result.failure else 0 for result in results)
-
-
-def table(results: Sequence[Result]) -> str:
-    """Return results of one scene side by side, with their errors and their notes."""
-    rows = [["", *(result.model for result in results)]]
-    for name in STATES:
-        for key in RESULTS:
-            quantity = QUANTITIES[key]
-            unit = f" ({quantity.unit})" if quantity.unit else ""
-            states = [getattr(result, name) for result in results]
-            cells = ["–" if s is None else cell(key, getattr(s, key), getattr(s.error, key, math.nan)) for s in states]
-            words = called(name, next((s.voltage for s in states if s is not None), results[0].scene.volts))
-            rows.append([f"{words}: {quantity.words}{unit}", *cells])
-    rows.append(["processor time (s)", *(f"{result.cost.processor_seconds:.2f}" for result in results)])
-    rows.append(["factorisations", *(str(result.cost.factorisations) for result in results)])
-    rows.append(["unknowns", *(str(result.cost.unknowns) for result in results)])
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    lines = ["  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]).rstrip() for row in rows]
-    remarks = [(result.model, (*result.notes, *result.cautions, _failure(result))) for result in results]
-    shared = [note for note in remarks[0][1] if note and len(remarks) > 1 and all(note in each for _, each in remarks)]
-    notes = [f"{model}: {note}" for model, each in remarks for note in each if note and note not in shared]
-    known = [result for result in results if any(state.error.known() for state in result.named.values())]
-    if known:
-        notes.insert(0, plus_minus_of(f"{part} ({each.model})" for each in known for part in each.parts()))
-    return "\n".join(lines + notes + shared)
-
-
-def _failure(result: Result) -> str:
-    """Return why a column ends early, or has no values; empty of a result that is whole."""
-    return result.failure if result.named or not result.failure else f"no values, since {result.failure}"
-
-
-# -- measurements --------------------------------------------------------------------------------------
-def compare_data(argv: Sequence[str]) -> int:
     """Compare tables of measurements with results; return the exit code."""
-    parser = Parser("compare-data", _DATA)
+    parser = Parser("compare", _EXAMPLES)
     parser.add_argument("tables", nargs="+", type=path, metavar="TABLE", help="CSV with names and units in its header")
     words = "a column of the tables by the name and unit it has here, as 'Fn=force (N)'; 'Fn=' leaves it out"
     parser.add_argument("--column", action="append", default=[], metavar="HEAD=NAME", help=words)
@@ -120,7 +44,6 @@ def compare_data(argv: Sequence[str]) -> int:
     output.add_files(parser, _COLUMNS, "picture of measured and computed values", "--out")
     args = parser.read(argv)
     from fingerpad.measurements import compare, table  # pandas
-    from fingerpad.measurements.computed import computed
 
     columns = dict[str, str | None]()
     for text in args.column:
@@ -129,7 +52,7 @@ def compare_data(argv: Sequence[str]) -> int:
             raise SceneError(f"--column is {clip(repr(text))}; it must be HEAD=NAME, such as 'Fn=force (N)'")
         columns[head] = name
     measured = [table.read(file, columns, args.state) for file in args.tables]
-    known = [computed(args.results, each) for each in measured]
+    known = [compare.computed(args.results, each) for each in measured]
     compared = [compare.comparison(*pair) for pair in zip(measured, known, strict=True)]
     echo("\n\n".join("\n".join(_lines(each)) for each in compared))
     rows = [row for each in compared for row in _rows(each)]

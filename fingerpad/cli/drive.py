@@ -8,12 +8,12 @@ from typing import Any
 
 from fingerpad.cli import output
 from fingerpad.cli.arguments import PICTURE, Parser, changes, echo, quantities, refuse_twice, scene_of
-from fingerpad.reduced.detection import REFERENCE
+from fingerpad.model.cautions import examine
 from fingerpad.results.quantities import Output
-from fingerpad.runs.drive import FREQUENCIES, drive, thresholds
+from fingerpad.runs.drive import FREQUENCIES, REFERENCE_FREQUENCY, drive, thresholds
 from fingerpad.scene import Scene, load
 from fingerpad.scene.messages import SceneError, clip
-from fingerpad.scene.remarks import circuit_in_words, leakage
+from fingerpad.scene.remarks import circuit_in_words
 
 _COLUMNS = (
     Output("frequency", "Hz", digits=1),
@@ -50,8 +50,8 @@ def main(argv: Sequence[str]) -> int:
     rows = [vars(each) | {"square": each.sine * each.square_over_sine} for each in thresholds(scene, frequencies)]
     found = None if scene.drive is None else drive(scene)
     constant = f"voltage is {scene.volts:g} V and no drive: no friction over a period."
-    echo("\n".join([constant, *leakage(scene)]) if found is None else str(found))
-    echo(f"\nVoltage at the threshold of detection, relative to a sine of {REFERENCE:g} Hz:\n")
+    echo("\n".join([constant, *map(str, examine("note", scene))]) if found is None else str(found))
+    echo(f"\nVoltage at the threshold of detection, relative to a sine of {REFERENCE_FREQUENCY:g} Hz:\n")
     echo(output.text(_COLUMNS, rows))
     if math.isinf(max(row["square"] for row in rows)):
         echo("\ninf: never felt, as the attraction is constant.")
@@ -102,7 +102,7 @@ def draw(file: Path, rows: Sequence[Mapping[str, Any]]) -> None:
             for row, fill in zip(rows, fills, strict=True):
                 part.plot(row["frequency"], row[name], look[0], color=colour, mfc=fill, ms=5)
         other.axhline(1.0, color=style.GREY, ls=":")
-        ax.set_ylabel(f"threshold over that of a sine at {REFERENCE:g} Hz (–)")
+        ax.set_ylabel(f"threshold over that of a sine at {REFERENCE_FREQUENCY:g} Hz (–)")
         other.set_ylabel("threshold, square over sine (–)")
         ax.legend(title="open: extrapolated")
         for part in (ax, other):

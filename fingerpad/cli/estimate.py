@@ -1,4 +1,4 @@
-"""``fingerpad estimate``: friction over force, voltage or other keys by the closed form, a sweep without a folder."""
+"""``fingerpad estimate``, a sweep by the closed form without a folder, and ``fingerpad solve``, its inverse."""
 
 import inspect
 import math
@@ -10,20 +10,27 @@ import numpy as np
 
 from fingerpad.cli import output, ranges
 from fingerpad.cli.arguments import PICTURE, Kind, Parser, echo, refuse_file, refuse_twice, scene_of
+from fingerpad.model.cautions import examine
 from fingerpad.reduced.cylinders import Cylinders
 from fingerpad.results.quantities import FINGER, QUANTITIES, Output
+from fingerpad.runs import inverse
 from fingerpad.runs.roots import axis
 from fingerpad.runs.sweep import sweep
 from fingerpad.runs.sweep_columns import head_of, printed
 from fingerpad.runs.sweep_results import Sweep
 from fingerpad.scene import Scene
-from fingerpad.scene.messages import SceneError, clip
+from fingerpad.scene.messages import SceneError, clip, show
 
 _EXAMPLES = """
     fingerpad estimate --force "0.1, 0.3, 0.5 N" --voltage 0,100,200
     fingerpad estimate --force "0.5 N" --voltage 0:200:41 --plot mu.png
     fingerpad estimate --over voltage --over electric.d_i --target 0.5 --plot map.png --csv map.csv
     fingerpad estimate --set friction=0.3 --f-ext 50 --voltage 0,100,200 --csv mu.csv
+"""
+_SOLVE = """
+    fingerpad solve --target mu_app=0.4 --over voltage
+    fingerpad solve --target "f_t=0.3 N" --set force="0.5 N"
+    fingerpad solve --target mu_app=1.1 --relative --over electric.d_i --from "0.5 um" --to "5 um"
 """
 _KEYS = ("force", "f_ext", "voltage")
 _COUNT = 11  # values of a key without a range of its own
@@ -56,7 +63,8 @@ def main(argv: Sequence[str]) -> int:
     options: dict[str, Any] = {"model": Cylinders.name, **over}
     found = sweep(scene.replace(force=None) if "f_ext" in over else scene, None, **options)
     if all(result.failure for result in found.results):
-        raise SceneError(found.results[-1].failure)
+        last = found.results[-1]
+        raise SceneError("; ".join(map(str, (last.failure, *examine("load", last.scene)))))
     echo(str(found))
     if args.csv:
         found.to_csv(args.csv)
@@ -161,3 +169,40 @@ def _map(figure: Any, ax: Any, at: Any, quantity: Output, values: Any, errors: A
     for set_scale, each in zip((ax.set_xscale, ax.set_yscale), at, strict=True):
         set_scale("log" if each.min() > 0 and each.max() > _RATIO * each.min() else "linear")
     figure.colorbar(mesh, ax=ax, label=style.plain(quantity.title))
+
+
+# -- the inverse -----------------------------------------------------------------------------------------------
+def solve(argv: Sequence[str]) -> int:
+    """Find the values of a key; return the exit code."""
+    parser = Parser("solve", _SOLVE)
+    parser.add_scene()
+    words = "at full slip, as mu_app=0.4 or 'f_t=0.3 N'"
+    parser.add_argument("--target", action="append", default=[], metavar="QUANTITY=VALUE", help=words)
+    words = "the target is a multiple of the value without voltage: mu_app=2 is twice the friction"
+    parser.add_argument("--relative", action="store_true", help=words)
+    parser.add_argument("--over", default="voltage", metavar="KEY", help="key that is varied (default: %(default)s)")
+    parser.add_argument("--from", dest="low", metavar="VALUE", help="first value of the key, also with a unit")
+    parser.add_argument("--to", dest="high", metavar="VALUE", help="last value of the key, also with a unit")
+    args = parser.read(argv)
+    if len(args.target) != 1:
+        given = "no --target is given" if not args.target else f"--target is given {len(args.target)} times"
+        raise SceneError(f"{given}; give one quantity and its value, as --target mu_app=0.4")
+    name, equals, value = (part.strip() for part in args.target[0].partition("="))
+    if not (name and equals and value):
+        raise SceneError(f"target is {show(args.target[0])}; give a quantity and its value, as --target mu_app=0.4")
+    if (args.low is None) != (args.high is None):
+        raise SceneError(f"one of --from and --to is given without the other; give both, or none for {clip(args.over)}")
+    between = None if args.low is None else [_number(args.low), _number(args.high)]
+    if name in inspect.signature(inverse.solve).parameters:
+        raise SceneError(f"target is {show(args.target[0])}; {name} is no quantity, such as mu_app")
+    options: dict[str, Any] = {"relative": args.relative, "between": between, name: _number(value)}
+    echo(str(inverse.solve(scene_of(args, meshed=False), args.over, **options)))
+    return 0
+
+
+def _number(text: str) -> float | str:
+    """Return a number, or a text that may have a unit."""
+    try:
+        return float(text)
+    except ValueError:
+        return text

@@ -12,12 +12,12 @@ from pydantic import ValidationError
 
 from fingerpad.cli import output
 from fingerpad.cli.arguments import PICTURE, Parser, echo, path, quantities, scene_of, several
-from fingerpad.model.cautions import on_closure
+from fingerpad.model.cautions import examine
 from fingerpad.results.quantities import QUANTITIES, Output
 from fingerpad.scene import Scene, from_data, override
 from fingerpad.scene.materials import CLOSURES, Topography
 from fingerpad.scene.messages import SceneError, clip, first_error
-from fingerpad.scene.remarks import on_waves, remarks
+from fingerpad.scene.remarks import on_waves
 from variational.attraction.electroadhesion import VACUUM_PERMITTIVITY
 from variational.roughness.bam import STICKING, BearingArea
 from variational.roughness.heightfile import Found, scan
@@ -79,9 +79,11 @@ def microscale(argv: Sequence[str]) -> int:
     sticking = closure.sticking_voltage()
     least = f"From {sticking or 0:.3g} V a ridge would stick: to pull it off takes {STICKING * 1e-3:g} kPa or more."
     echo(least if sticking else "No voltage makes a ridge stick: the insulators are thick for this roughness.")
-    for text in remarks(scene):
+    for text in examine("scene", scene):
         echo(f"{text}.")
-    for text in on_closure(closure, [(row["p_c"], 1.0, row["voltage"]) for row in rows], "pressures and voltages"):
+    for text in map(
+        str, closure.cautions([(row["p_c"], 1.0, row["voltage"]) for row in rows], "pressures and voltages")
+    ):
         echo(f"{text[0].upper()}{text[1:]}.")
     output.write_files(args, _COLUMNS, rows, _draw_microscale)
     return 0

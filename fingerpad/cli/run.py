@@ -1,19 +1,20 @@
 """``fingerpad run``: press, charge and slide a finger, from a scene to tables, pictures and fields."""
 
+import signal
 from argparse import Namespace
 from collections.abc import Sequence
 from pathlib import Path
 
 from fingerpad.cli.arguments import Parser, echo, path, refuse_twice, scene_of
 from fingerpad.launcher import raising_at_ctrl_c
-from fingerpad.model.cautions import breakdown_ahead
-from fingerpad.reduced.registry import MODELS, find
+from fingerpad.model.cautions import examine
 from fingerpad.report.write import NAME
 from fingerpad.results.files import check_folder
 from fingerpad.results.folder import full_scene
+from fingerpad.results.result import Result
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.post import in_words
-from fingerpad.runs.solve import solved
+from fingerpad.runs.solve import MODELS, find, solved
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.reading import DEFAULT_MODEL, model_of
@@ -65,16 +66,14 @@ def main(argv: Sequence[str]) -> int:
 
     start(args.petsc)
     # PETSc has its options from here on.
-    from fingerpad.runs.full import exit_code
-
-    for caution in breakdown_ahead(scene.resolved()) if shown else ():
+    for caution in examine("load", scene.resolved()) if shown else ():
         echo(f"Caution: {caution}.")
     with raising_at_ctrl_c():
         result = solved(scene, model, context)
     if args.quiet or not model.path or scene.force is not None:  # else the run has printed it
         echo(f"\n{in_words(result)}" if result.finger or scene.force is None else result.failure)
     _say_report(args)
-    return exit_code(result)
+    return _exit_code(result)
 
 
 def _say_report(args: Namespace) -> None:
@@ -102,3 +101,10 @@ def _cut_short(args: Namespace) -> Scene:
                 f"{name} and --resume are given; the folder of --resume has the scene, and takes the results"
             )
     return full_scene(args.resume)
+
+
+def _exit_code(result: Result) -> int:
+    """Return what a program ends with after a run: 0, 1 after a failure, or what the shell calls a signal."""
+    if result.interrupted:
+        return 128 + signal.Signals[result.interrupted]
+    return 1 if result.failure else 0

@@ -10,9 +10,9 @@ from typing import Any
 from fingerpad.cli import ranges
 from fingerpad.cli.arguments import Parser, changes, echo, positive
 from fingerpad.launcher import raising_at_ctrl_c
-from fingerpad.reduced.registry import MODELS
 from fingerpad.results.files import check_folder
 from fingerpad.runs import batch  # noqa: F401  # before Ctrl-C raises
+from fingerpad.runs.solve import MODELS
 from fingerpad.runs.sweep import FILES, STATES, sweep
 from fingerpad.scene import from_data, override
 from fingerpad.scene.messages import SceneError, clip, show

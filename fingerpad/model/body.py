@@ -35,6 +35,7 @@ from geometry.meshfile import file
 from geometry.units import to_si
 from variational import body as setup
 from variational.attraction.electroadhesion import ELECTROSTATIC
+from variational.caution import Caution
 from variational.contact.formulation import Formulation
 from variational.contact.friction import Friction
 from variational.contact.interface import Interface
@@ -129,10 +130,9 @@ class Body(StatePrinted):
             raise ValueError(f"shape is {shape!r}; it must be a shape of fingerpad.geometry, a mesh, or a file of one")
         build = file(shape) if isinstance(shape, str | Path) else shape
         self.mesh = build if isinstance(build, TaggedMesh) else load(comm, build)
+        h_0 = getattr(roughness, "h_0", None if roughness else 1.0) if h_0 is None else h_0  # of no effect at 0 V
         if h_0 is None:
-            h_0 = getattr(roughness, "h_0", None if roughness else 1.0)  # without a voltage it does not act
-            if h_0 is None:
-                raise ValueError("roughness has no h_0; give Body the effective insulator thickness, h_0=... in m")
+            raise ValueError("roughness has no h_0; give Body the effective insulator thickness, h_0=... in m")
         if roughness is not None:
             refuse_thickness(roughness, h_0)
         law = Interface(contact, friction, h_0, ELECTROSTATIC if roughness else None)
@@ -161,8 +161,7 @@ class Body(StatePrinted):
 
         Args:
             f_ext: external normal force on the bone (N/m), kept in what follows.
-            height: change of the bone's height from the unloaded position (m), negative when pressed; it is kept in
-                what follows.
+            height: change of the bone's height from the unloaded position (m), negative when pressed, kept likewise.
             seconds: how long the load takes (s), 0 for at once; required where a material is viscous or friction has a
                 memory. The same load again is a hold.
 
@@ -271,11 +270,8 @@ class Body(StatePrinted):
         return found
 
     @property
-    def cautions(self) -> list[str]:
-        """Limits of validity that accepted states reach: of the closure, and of the contact's stiffness beside the gap.
-
-        They are computed of all states so far; without ``roughness`` there are none.
-        """
+    def cautions(self) -> list[Caution]:
+        """Limits of validity that accepted states reach, of the closure and of the contact's stiffness."""
         return cautions.on_states(self.states, self._closure, self.problem.interface.formulation)
 
     @property

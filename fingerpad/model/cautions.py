@@ -1,6 +1,7 @@
 """Cautions on a scene and on its states: closures out of range, deep skin, ridges that adhere, breakdown of air.
 
 They belong to a state, whatever computed it: runs, bodies, cheaper models and tables of the microscale take them here.
+A new check is a line of :data:`CHECKS`; closures, laws of friction and formulations answer by a method ``cautions``.
 
 **Adhesion.** A ridge adheres where its attraction is all that the screen bears. On closures of rough contact ridges can
 do so at a voltage at which the bearing area model has none; the states then depend on the path, and one may not be
@@ -12,18 +13,18 @@ not count. Where a state has the mean attraction of a drive, a period of the dri
 *Assumption*: skin beside the contact, and ridges above the screen, are not examined.
 """
 
-from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Sequence
-from typing import NamedTuple
+from collections.abc import Callable, Iterable, Iterator, Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from fingerpad.model import drive_loads
-from fingerpad.scene import Scene
+from fingerpad.results.data import ResultData
+from fingerpad.results.states import long_steps
+from fingerpad.scene import Scene, remarks
 from fingerpad.scene.drive import Drive, drive_of
-from fingerpad.scene.remarks import remarks
 from fingerpad.scene.waveform import Waveform
+from variational.caution import Caution
 from variational.contact.formulation import Formulation
 from variational.roughness.closure import PAST_THE_FOLD, Closure, air_gaps
 from variational.roughness.gaps import breakdown_voltage
@@ -32,16 +33,25 @@ from variational.state import ContactState
 Array = NDArray[np.float64]
 Gap = tuple[str, float, float]
 """Name of a ridge or a state, air gap (m), and voltage (V) of Eq. 3 where the scene has no drive."""
-BALANCED = 0.1
-"""Part of the pressure in contact from which its attraction is overestimated by some 8 %."""
-_SHARE = 0.1  # of the contact force, from which ridges outside of the closure's range are mentioned
+_Across = tuple[str, float, float]
+"""Ridge or state, and the instant, in words; air gap (m); largest amount of the voltage across it (V)."""
 _MADE = 1e-6  # of the largest dissipation of a branch at a point: roundoff of the others'
 _DEEP = 0.1  # of the air gap: largest penetration that is of no matter
 _NO_LOAD = 1e-6  # of the contact force: what the balance of forces leaves of a force of zero
 _LIGHT = 1e4  # Pa, of a ridge at the edge of a contact, whose gap is the widest
 
 
-def on_scene(scene: Scene, states: Iterable[ContactState] = (), gaps: Iterable[Gap] = ()) -> list[str]:
+def examine(kind: str, *of: object) -> list[Caution]:
+    """Return the cautions by every check of a kind.
+
+    Args:
+        kind: a key of :data:`CHECKS`.
+        *of: what is examined, as its comment has it.
+    """
+    return [caution for check in CHECKS[kind] for caution in check(*of)]
+
+
+def on_scene(scene: Scene, states: Iterable[ContactState] = (), gaps: Iterable[Gap] = ()) -> list[Caution]:
     """Return the cautions on a scene, on states of it, and on gaps in which air breaks down.
 
     Args:
@@ -49,15 +59,14 @@ def on_scene(scene: Scene, states: Iterable[ContactState] = (), gaps: Iterable[G
         states: in any order.
         gaps: of states without ridges.
     """
-    states, found = list(states), remarks(scene)
-    if states:
-        found += [*on_states(states, scene.closure(), scene.contact.law), *breakdown_in_states(scene, states)]
-    return found + breakdown_in_gaps(scene, gaps)
+    states, found = list(states), examine("scene", scene)
+    found += on_states(states, scene.closure(), scene.contact.law) if states else []
+    return found + examine("gap", scene, states, gaps)
 
 
 def on_states(
     states: Iterable[ContactState], closure: Closure | None, formulation: Formulation | None = None
-) -> list[str]:
+) -> list[Caution]:
     """Return the cautions on states of a body.
 
     Args:
@@ -65,44 +74,18 @@ def on_states(
         closure: from a ridge's pressure to its air gap; without it there are none on it.
         formulation: of the contact, which has the remedy against deep skin; None of states without a mesh.
     """
-    states = list(states)
-    viscous = _made_energy(states)
-    touching = [state for state in states if state.contact_length > 0]
-    if closure is None or not touching:
-        return viscous
-    charged = [(*_pressures(state), state.voltage) for state in touching if state.voltage]
-    held = _without_load(touching, closure)
-    return [*held, *on_closure(closure, charged, "states"), *_deep(touching, closure, formulation), *viscous]
+    return examine("state", list(states), closure, formulation)
 
 
-# -- closures ------------------------------------------------------------------------------------------
-def on_closure(closure: Closure, points: Sequence[tuple[ArrayLike, ArrayLike, float]], noun: str) -> list[str]:
-    """Return how many points have ridges under a tenth of the contact force or more outside of the closure's range.
+# -- states ----------------------------------------------------------------------------------------------
+def _touching(states: Iterable[ContactState], charged: bool = False) -> list[ContactState]:
+    return [state for state in states if state.contact_length > 0 and (state.voltage or not charged)]
 
-    Args:
-        closure: its :meth:`variational.roughness.closure.Closure.state` names the places.
-        points: pressure (Pa) and contact force of each ridge, and the voltage (V).
-        noun: what the points are.
-    """
-    counts = Counter[str]()
-    for p_c, force, voltage in points:
-        borne = defaultdict[str, float](float)
-        for pressure, share in zip(np.atleast_1d(p_c), np.atleast_1d(force) / np.sum(force), strict=True):
-            borne[closure.state(float(pressure), voltage)] += float(share)
-        counts.update(place for place, share in borne.items() if place and share >= _SHARE)
-    found = [
-        f"in {count} of {len(points)} {noun} the closure is out of its range: the mean pressure of ridges is {place}"
-        for place, count in counts.items()
-    ]
-    shares = [float(closure.balanced(p_c, voltage).max(initial=0.0)) for p_c, _, voltage in points]
-    if many := sum(share >= BALANCED for share in shares):
-        found.append(
-            f"in {many} of {len(points)} {noun} the closure {type(closure).__name__} overestimates the attraction, "
-            f"which deforms the asperities: it balances up to {100 * min(max(shares), 1.0):.0f} % of the pressure in "
-            "contact (overestimated by 11 % at a share of 14 %, by 85 % at 50 %: docs/microscale.md); the values are "
-            "upper bounds, and roughness.field_in_contact=false gives lower ones"
-        )
-    return found
+
+def _beyond_closure(states: Sequence[ContactState], closure: Closure | None, _: object) -> list[Caution]:
+    """Return the closure's own cautions on charged states."""
+    points = [(*_pressures(state), state.voltage) for state in _touching(states, charged=True)]
+    return [] if closure is None or not points else closure.cautions(points)
 
 
 def _pressures(state: ContactState) -> tuple[Array, Array]:
@@ -113,35 +96,40 @@ def _pressures(state: ContactState) -> tuple[Array, Array]:
     return state.ridges.p_c[inside], state.ridges.f_contact[inside]
 
 
-def _deep(touching: Sequence[ContactState], closure: Closure, formulation: Formulation | None) -> list[str]:
-    """Return the caution on states whose penetration is more than a tenth of the least air gap in contact."""
+def _deep(
+    states: Sequence[ContactState], closure: Closure | None, formulation: Formulation | None
+) -> Iterator[Caution]:
+    """Yield the caution on states whose penetration is more than a tenth of the least air gap in contact."""
+    if closure is None:
+        return
     found = [
         (state.record.penetration, float(air_gaps(closure, _pressures(state)[0]).min()))
-        for state in touching
+        for state in _touching(states)
         if state.record is not None
     ]
     deep = [(depth, gap) for depth, gap in found if depth > _DEEP * gap]
-    if not deep:
-        return []
-    depth, gap = max(deep, key=lambda each: each[0] / each[1])
-    return [
-        f"in {len(deep)} of {len(found)} states the skin is deeper in the screen than a tenth of the air gap, "
-        f"{depth * 1e6:.2g} µm where the gap is {gap * 1e6:.2g} µm: attraction and contact length depend on the depth"
-        + ("" if formulation is None else f"; {formulation.less_penetration}")
-    ]
+    if deep:
+        depth, gap = max(deep, key=lambda each: each[0] / each[1])
+        remedy = "" if formulation is None else f"; {formulation.less_penetration}"
+        text = (
+            f"in {len(deep)} of {len(found)} states the skin is deeper in the screen than a tenth of the air gap, "
+            f"{depth * 1e6:.2g} µm where the gap is {gap * 1e6:.2g} µm: attraction and contact length depend on the "
+            f"depth{remedy}"
+        )
+        yield Caution("deep_skin", text, depth)
 
 
-def _made_energy(states: Sequence[ContactState]) -> list[str]:
-    """Return the caution on branches of viscous layers that made energy at a point."""
+def _made_energy(states: Sequence[ContactState], *_: object) -> Iterator[Caution]:
+    """Yield the caution on branches of viscous layers that made energy at a point."""
     least = [state.record.viscous_least for state in states if state.record is not None]
     found = [each for each in least if each < -_MADE]
-    if not found:
-        return []
-    return [
-        f"in {len(found)} of {len(least)} steps branches of viscous layers made energy at points and dissipated none, "
-        f"up to {-min(found):.1g} of the largest dissipation: quasi-linear viscoelasticity allows that at large "
-        "strain, and no material does"
-    ]
+    if found:
+        text = (
+            f"in {len(found)} of {len(least)} steps branches of viscous layers made energy at points and dissipated "
+            f"none, up to {-min(found):.1g} of the largest dissipation: quasi-linear viscoelasticity allows that at "
+            "large strain, and no material does"
+        )
+        yield Caution("energy_made", text, -min(found))
 
 
 # -- adhesion ------------------------------------------------------------------------------------------
@@ -192,25 +180,31 @@ def lost(error: Exception | str, state: ContactState | None, closure: Closure | 
     return "; ".join(filter(None, (str(error), adhering(state, closure))))
 
 
-def without_slip(states: Sequence[ContactState], closure: Closure | None) -> list[str]:
-    """Return the caution on a path that ended without full slip where ridges adhere; none where they do not."""
-    words = adhering(states[-1], closure) if states else ""
-    return [f"full slip was not reached, or not held: {words}"] if words else []
+def _without_slip(result: ResultData, states: Sequence[ContactState]) -> Iterator[Caution]:
+    """Yield the caution on a path that ended without full slip where ridges adhere."""
+    wanted = any(load.until_full_slip for load in result.scene.loads()) and not result.failure
+    if wanted and result.full_slip is None and states and (words := adhering(states[-1], result.scene.closure())):
+        yield Caution("no_full_slip", f"full slip was not reached, or not held: {words}", states[-1].voltage)
 
 
-def _without_load(states: Iterable[ContactState], closure: Closure) -> list[str]:
-    """Return in how many charged states attraction alone holds the finger, and the ridge that adheres most."""
-    charged = [state for state in states if state.voltage]
+def _long_steps(result: ResultData, _: object) -> list[Caution]:
+    return long_steps(result.loads, result.record.get("force_error", 0.0))
+
+
+def _without_load(states: Sequence[ContactState], closure: Closure | None, _: object) -> Iterator[Caution]:
+    """Yield in how many charged states attraction alone holds the finger, and the ridge that adheres most."""
+    charged = _touching(states, charged=True)
     held = [state for state in charged if state.f_ext <= _NO_LOAD * state.f_contact]
-    if not held:
-        return []
+    if closure is None or not held:
+        return
     last, most = held[-1], _most_attracted(held[-1])
     pull, words = min(last.f_ext, 0.0) + 0.0, sticking(closure, last.voltage)
     ridge = "" if most is None else f", most by ridge {most[0]}"
-    return [
+    text = (
         f"in {len(held)} of {len(charged)} charged states the finger adheres without a load{ridge}, at {pull:.3g} N/m "
         f"and {last.voltage:.4g} V" + (f"; {words}" if words else "")
-    ]
+    )
+    yield Caution("adheres", text, pull)
 
 
 def _most_attracted(state: ContactState) -> tuple[int, float] | None:
@@ -222,27 +216,7 @@ def _most_attracted(state: ContactState) -> tuple[int, float] | None:
 
 
 # -- breakdown of air ----------------------------------------------------------------------------------
-class _Across(NamedTuple):
-    """Voltage across a gap."""
-
-    where: str
-    """Ridge or state, and the instant, in words."""
-    gap: float
-    """Air gap (m)."""
-    volts: float
-    """Largest amount of the voltage across it (V)."""
-
-
-def breakdown_in_gaps(scene: Scene, gaps: Iterable[Gap]) -> list[str]:
-    """Return the caution on the gap in which air is the farthest beyond breakdown."""
-    drive, h_0 = scene.drive, scene.h_0
-    return _breakdown(
-        _Across(name, gap, abs(voltage) * gap / (gap + h_0)) if drive is None else _over_period(drive, name, gap)
-        for name, gap, voltage in gaps
-    )
-
-
-def breakdown_ahead(scene: Scene) -> list[str]:
+def _breakdown_ahead(scene: Scene) -> list[Caution]:
     """Return the caution on the loads of a scene before anything is solved, in the gap of a ridge under 10 kPa.
 
     Ridges at the edge of a contact bear as little. Their gaps are the widest, and have the largest part of the voltage.
@@ -252,30 +226,39 @@ def breakdown_ahead(scene: Scene) -> list[str]:
         return _breakdown([_over_period(scene.drive, name, gap)])
     share, loads = drive_loads.gap_factor(scene), scene.loads()
     part = gap / (gap + scene.h_0) * (1.0 if share is None else float(share(gap)))
-    found = [_Across(name, gap, abs(load.level) * part) for load in loads if load.level]
+    found = [(name, gap, abs(load.level) * part) for load in loads if load.level]
     found += [_over_period(_drive(scene, load.wave), name, gap) for load in loads if load.wave is not None]
     return _breakdown(found)
 
 
-def breakdown_in_states(scene: Scene, states: Iterable[ContactState]) -> list[str]:
+def _breakdown_in_states(scene: Scene, states: Sequence[ContactState], _: object = ()) -> list[Caution]:
     """Return the caution on the ridge in contact in whose gap air is the farthest beyond breakdown, with the instant.
 
-    Args:
-        scene: that the full model follows.
-        states: in any order; those without a voltage or values by ridge have none.
+    States without a voltage or values by ridge have none.
     """
     charged = [state for state in states if state.voltage and state.ridges is not None]
     return _breakdown([*_instants(scene, charged), *_periods(scene, charged)])
 
 
-def _breakdown(points: Iterable[_Across]) -> list[str]:
-    worst = max(points, key=lambda each: each.volts / float(breakdown_voltage(each.gap)), default=None)
-    if worst is None or not worst.volts > (limit := float(breakdown_voltage(worst.gap))):
+def _breakdown_in_gaps(scene: Scene, _: object, gaps: Iterable[Gap] = ()) -> list[Caution]:
+    """Return the caution on the gap in which air is the farthest beyond breakdown."""
+    drive, h_0 = scene.drive, scene.h_0
+    return _breakdown(
+        (name, gap, abs(voltage) * gap / (gap + h_0)) if drive is None else _over_period(drive, name, gap)
+        for name, gap, voltage in gaps
+    )
+
+
+def _breakdown(points: Iterable[_Across]) -> list[Caution]:
+    worst = max(points, key=lambda each: each[2] / float(breakdown_voltage(each[1])), default=None)
+    if worst is None or not worst[2] > (limit := float(breakdown_voltage(worst[1]))):
         return []
-    return [
-        f"{worst.volts:.4g} V are across a gap of {1e6 * worst.gap:.3g} µm in {worst.where}, and from "
-        f"{limit:.4g} V on air breaks down there, which is not in this model"
-    ]
+    where, gap, volts = worst
+    text = (
+        f"{volts:.4g} V are across a gap of {1e6 * gap:.3g} µm in {where}, and from {limit:.4g} V on air breaks down "
+        "there, which is not in this model"
+    )
+    return [Caution("breakdown", text, float(volts))]
 
 
 def _drive(scene: Scene, wave: Waveform) -> Drive:
@@ -285,21 +268,21 @@ def _drive(scene: Scene, wave: Waveform) -> Drive:
 def _over_period(drive: Drive, name: str, gap: float) -> _Across:
     period = np.abs(drive.across(gap))
     when = int(period.argmax()) / len(period) / drive.frequency
-    return _Across(f"{name} {when:.3g} s after the start of a period", gap, float(period.max()))
+    return f"{name} {when:.3g} s after the start of a period", gap, float(period.max())
 
 
 def _instants(scene: Scene, states: Sequence[ContactState]) -> Iterator[_Across]:
     """Yield the farthest gap of each state at its voltage."""
     share, loads = drive_loads.gap_factor(scene), scene.loads()
     for state in states:
-        touching, gaps = _touching(state)
+        touching, gaps = _in_contact(state)
         if not len(gaps):
             continue
         volts = abs(state.voltage) * (1.0 if share is None else share(gaps)) * gaps / (gaps + scene.h_0)
         k = int(np.argmax(volts / breakdown_voltage(gaps)))
         timed = 0 < state.load_number <= len(loads) and loads[state.load_number - 1].takes_time
         when = f" at {state.time:.4g} s" if timed else ""
-        yield _Across(f"ridge {touching[k]} in {state.load!r}, step {state.step}{when}", gaps[k], volts[k])
+        yield f"ridge {touching[k]} in {state.load!r}, step {state.step}{when}", gaps[k], volts[k]
 
 
 def _periods(scene: Scene, states: Sequence[ContactState]) -> Iterator[_Across]:
@@ -312,17 +295,30 @@ def _periods(scene: Scene, states: Sequence[ContactState]) -> Iterator[_Across]:
         wave = loads[state.load_number - 1].wave if 0 < state.load_number <= len(loads) else None
         mean = wave is not None and (scene.electric.follows == "mean" or wave.carrier is not None)
         if scene.drive is not None or mean:
-            places = [f"ridge {number} in {state.load!r}, step {state.step}," for number in _touching(state)[0]]
+            touching, gaps = _in_contact(state)
+            places = [f"ridge {number} in {state.load!r}, step {state.step}," for number in touching]
             under = wave if scene.drive is None else scene.drive.wave
             assert under is not None
-            of_wave.setdefault(under, []).extend(zip(map(float, _touching(state)[1]), places, strict=True))
+            of_wave.setdefault(under, []).extend(zip(map(float, gaps), places, strict=True))
     for wave, found in of_wave.items():
         for gap, where in {min(found), max(found)} if found else ():
             yield _over_period(_drive(scene, wave), where, gap)
 
 
-def _touching(state: ContactState) -> tuple[np.ndarray, np.ndarray]:
+def _in_contact(state: ContactState) -> tuple[np.ndarray, np.ndarray]:
     """Return number and air gap (m) of the ridges in contact."""
     assert state.ridges is not None
     inside = state.ridges.length > 0
     return state.ridges.number[inside], state.ridges.d_eq[inside]
+
+
+CHECKS: dict[str, list[Callable[..., Iterable[Caution]]]] = {
+    "scene": [*remarks.CHECKS],  # of a scene
+    "law": [lambda scene: scene.contact.law.cautions()],  # of a scene, before a run
+    "load": [_breakdown_ahead],  # of a scene, before a run
+    "state": [_without_load, _beyond_closure, _deep, _made_energy],  # of states, closure and formulation
+    "gap": [_breakdown_in_states, _breakdown_in_gaps],  # of a scene, its states, and gaps of states without ridges
+    "result": [_long_steps, _without_slip],  # of a result of the full model, and its states
+    "note": [*remarks.NOTES],  # of a scene; what a result has as notes
+}
+"""What limits of validity are examined: by kind, and each as arguments of :func:`examine` by its comment."""

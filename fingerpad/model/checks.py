@@ -55,9 +55,6 @@ class ContactZone:
     def check(self, loads: RidgeLoads) -> tuple[int, str] | None:
         """Return the last ridge, on either side, that must be able to touch, and why; None where it can; collective.
 
-        Args:
-            loads: resultants of the ridges that can touch.
-
         Raises:
             FingerExceeded: more ridges must be able to touch, and there are no more.
         """
@@ -86,12 +83,7 @@ class ContactZone:
 
 
 def more(last: int, count: int) -> int | None:
-    """Return the last ridge, on either side, that can touch after a restart; None if all could before.
-
-    Args:
-        last: the last one before.
-        count: number of all ridges of the finger.
-    """
+    """Return the last of ``count`` ridges, on either side, that can touch after a restart; None if all could before."""
     return None if last == (count - 1) // 2 else last + max(_MORE, round(_PART * last))
 
 
@@ -115,26 +107,20 @@ class Checked:
 
     def __str__(self) -> str:
         """Return the verdict in words."""
-        verdict = "stable" if self.stable else "not stable"
-        unsettled = "" if self.frozen.settled else ", not settled"
-        return (
-            f"{verdict}: lambda_min {self.frozen.lambda_min:.4g} Pa/m{unsettled}, gain of the air gaps {self.gain:.3g}"
-        )
+        least = f"{self.frozen.lambda_min:.4g} Pa/m{'' if self.frozen.settled else ', not settled'}"
+        return f"{'' if self.stable else 'not '}stable: lambda_min {least}, gain of the air gaps {self.gain:.3g}"
 
 
 class StabilityChecks(dict[int, Checked]):
     """Stability by step."""
 
     def __init__(self, finger: Finger) -> None:
-        """Take the finger."""
+        """Have no stability yet."""
         super().__init__()
         self._finger, self._check = finger, StabilityCheck(finger.solver)
 
     def check(self, load: str) -> Checked:
-        """Return the stability of the present state; collective.
-
-        Args:
-            load: name of the present load.
+        """Return the stability of the present state, in the load of this name; collective.
 
         Raises:
             StepFailed: the stability cannot be examined.
@@ -166,7 +152,7 @@ class FullSlip:
         """Return whether full slip is steady, and slide on by 0.2 mm for that; collective.
 
         Args:
-            load: name of the load.
+            load: its name.
             direction: 1 or -1, the way the bone slides.
             speed: of the bone (m/s); 0 where it takes no time.
         """
@@ -177,7 +163,7 @@ class FullSlip:
         return path.slip[1] and self._unchanged(before, solver.reaction[0])
 
     def placed(self, states: Sequence[ContactState], state: ContactState, probe: bool) -> ContactState:
-        """Return a state with the step at which its full slip began and whether that was held; collective.
+        """Return the present state with the step at which its full slip began and whether that was held; collective.
 
         Args:
             states: those before it.

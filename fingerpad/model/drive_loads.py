@@ -21,7 +21,7 @@ from fingerpad.scene.messages import SceneError
 from fingerpad.scene.wavefile import POINTS
 from fingerpad.scene.waveform import Waveform
 from geometry.units import computed
-from variational.attraction.network import Network
+from variational.attraction.circuit import Network
 
 Array = NDArray[np.float64]
 _FEWEST_POINTS, _MOST_POINTS = 12, 48  # points of a period of the wave

@@ -73,11 +73,7 @@ class Viewer:
         return snapshot, merkel
 
     def body(self, fields: bool = True) -> Snapshot | None:
-        """Return the present state of the whole body, on rank 0; collective.
-
-        Args:
-            fields: whether its energy densities, stresses and strains are computed.
-        """
+        """Return the present state of the whole body, with its fields or without, on rank 0; collective."""
         snapshot = self._lines.snapshot(self._finger.problem, fields)
         return snapshot if snapshot is None or self._finger.options.both_halves else snapshot.whole()
 
@@ -98,12 +94,7 @@ class Viewer:
 
 
 def _both_sides(half: Array, ridge: NDArray[np.int64]) -> tuple[Array, NDArray[np.int64]]:
-    """Return the skin of both sides of that at x >= 0, and the place of each facet's ridge among all.
-
-    Args:
-        half: the columns of a profile, shape (columns, facets, points).
-        ridge: number of each facet's ridge, shape (facets,).
-    """
+    """Return the skin of both sides of that at x >= 0, shape (columns, facets, points), and the ridge of each facet."""
     signs = np.array([-1.0 if name in _HORIZONTAL else 1.0 for name in _PROFILE])[:, None, None]
     last = int(ridge.max())
     return np.concatenate([half, signs * half], axis=1), np.concatenate([last + ridge, last - ridge])
@@ -120,12 +111,7 @@ class PathRecord:
     """
 
     def __init__(self, comm: MPI.Comm, checks: Mapping[int, Checked]) -> None:
-        """Keep nothing yet.
-
-        Args:
-            comm: communicator of the run.
-            checks: stability by step, as far as it is examined.
-        """
+        """Keep nothing yet; stability is known by step as far as it is examined."""
         self._comm, self._checks = comm, checks
         self.states: list[ContactState] = []
         self.skins: dict[int, Skin] = {}
@@ -139,14 +125,10 @@ class PathRecord:
         animation.thin(self.moved)
 
     def prune(self, loads: Sequence[str]) -> None:
-        """Drop the skin of steps that nothing will show, whatever follows; rank 0 alone has one.
-
-        Args:
-            loads: names of the loads in order.
-        """
+        """Drop the skin of steps that nothing will show, whatever follows the loads of these names."""
         last, rows = self.states[-1], self.states
         shown = [*states.named(rows, loads).values(), *(end.state for end in self.ends.values()), last]
-        shown += [row for row in (states.partial_slip(rows), states.nearest_to_half(rows)) if row]
+        shown += [row for row in (states.partial_slip(rows), states.partial_slip(rows, math.inf)) if row]
         steps = {state.step for state in shown} | {last.slip_began}
         self.skins = {step: skin for step, skin in self.skins.items() if step in steps}
 
@@ -163,8 +145,7 @@ class PathRecord:
             # A full slip counts because it was held; the row of its first step is of before that.
             sites = final[name].state.sites if name in final else state.sites
             found[name] = replace(state, skin=skin, sites=sites, slip_held=state.slip_held or name == "full_slip")
-            check = self._check(state)
-            if check is not None:
+            if check := self._check(state):
                 found[name] = check.of(found[name])
         return found
 
@@ -173,14 +154,14 @@ class PathRecord:
         same = [other.step for other in self.states if other.slip_began == state.slip_began > 0]
         return next((self._checks[k] for k in (state.step, *same) if k in self._checks), None)
 
-    def loads(self, loads: Sequence[Load], mu_0: float | None) -> list[states.LoadResult]:
+    def loads(self, loads: Sequence[Load], mu_0: float | None) -> tuple[states.LoadResult, ...]:
         """Return the result of each load of a history; see :func:`fingerpad.results.states.load_results`."""
 
-        def stable(k: int, end: ContactState) -> bool | None:
+        def stable(end: ContactState) -> bool | None:
             check = self._check(end)
             return None if check is None else check.stable
 
-        return list(states.load_results(self.states, loads, stable, mu_0))
+        return states.load_results(self.states, loads, stable, mu_0)
 
     def drawing(
         self, mu_0: float | None, final: Mapping[str, View], size: float | None, named: Mapping[str, ContactState]

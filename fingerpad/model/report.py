@@ -25,6 +25,8 @@ from fingerpad.scene.messages import counted
 from variational.solvers.outcome import Counts, memory_mb
 from variational.state import ContactState
 
+_PICTURED = ("skins", "moved", "ends")  # what pictures need of a path's record, beside its states
+
 
 class Clock:
     """Wall and processor time since the run began.
@@ -60,12 +62,7 @@ class Clock:
         return float(self._comm.allreduce(time.process_time() - self._processor))
 
     def cost(self, counts: Counts, unknowns: int) -> Cost:
-        """Return the cost of a run, the same on every rank; collective.
-
-        Args:
-            counts: iterations of the path's solver.
-            unknowns: of the final mesh.
-        """
+        """Return the cost of a run of these iterations and unknowns, the same on every rank; collective."""
         memory, (wall, processor) = self._comm.allreduce(memory_mb()), self.present()
         found = Cost(processor, wall, counts.newton, counts.factorisations, unknowns, memory, self._comm.size)
         return self._comm.bcast(found)
@@ -89,14 +86,14 @@ class Report:
         clock: Clock,
         outputs: Sequence[Output] = (),
     ) -> None:
-        """Print the model; nothing is written before there is a step.
+        """Print the model, and the parts that it leaves out; nothing is written before there is a step.
 
         Args:
             simulation: set up, at its start.
             omitted: parts that its model leaves out.
             loads: names of its loads in order.
-            writer: writes into the folder.
-            console: prints.
+            writer: of the folder.
+            console: of the run.
             clock: of the run.
             outputs: computed from each state.
         """
@@ -114,12 +111,7 @@ class Report:
         console.head()
 
     def step(self, step: Step, done: float) -> None:
-        """Report an accepted step; collective.
-
-        Args:
-            step: the present state.
-            done: part of the whole history that is done.
-        """
+        """Report an accepted step, the present state, with the part of the whole history that is done; collective."""
         with self._clock.phase("output"):
             assert step.state.record is not None
             self._writer.take()
@@ -129,14 +121,12 @@ class Report:
             state = valued(state, self._outputs, self.lost)
             self.record.states.append(state)
             skin, body = self._viewer.skin(step), self._viewer.body(fields=False)
-            if skin is not None and body is not None:
-                self.record.move(state, skin, body)
             self._show(state, done)
-            if self._simulation.finger.problem.mesh.comm.rank == 0:
+            if skin is not None and body is not None:  # on rank 0
+                self.record.move(state, skin, body)
                 self._log(step, state)
 
     def _show(self, state: ContactState, done: float) -> None:
-        """Write the row of an accepted state, and print it."""
         self._writer.row("steps", state.row())
         self._console.step(state, done)
 
@@ -165,28 +155,17 @@ class Report:
     def kept(self) -> dict[str, Any]:
         """Return what another process needs to go on with all tables and pictures but the states, whole on rank 0."""
         self.record.prune(self._loads)
-        return {
-            "skins": self.record.skins,
-            "moved": self.record.moved,
-            "ends": self.record.ends,
-            "shown": self._shown,
-            "logged": self._logged,
-            "log": self._writer.log_text(),
-        }
+        found = {name: getattr(self.record, name) for name in _PICTURED}
+        return found | {"shown": self._shown, "logged": self._logged, "log": self._writer.log_text()}
 
     def resume(self, states: list[ContactState], kept: Mapping[str, Any], done: float) -> None:
-        """Go on from what another process kept; collective.
-
-        Args:
-            states: all that it accepted, on every rank.
-            kept: what it kept besides, on every rank.
-            done: part of the whole history that is done.
-        """
+        """Go on from the states that another process accepted and from what it kept, on every rank; collective."""
         self._writer.earlier_log = kept["log"]
         self._writer.take()
         self.record.states, self._logged, self._shown = states, kept["logged"], kept["shown"]
         if self._simulation.finger.problem.mesh.comm.rank == 0:
-            self.record.skins, self.record.ends, self.record.moved = kept["skins"], kept["ends"], kept["moved"]
+            for name in _PICTURED:
+                setattr(self.record, name, kept[name])
         for state in self.record.states:
             self._show(state, done)
 

@@ -38,6 +38,7 @@ class Simulation:
 
     Attributes:
         finger: the finger.
+        restart: what must be added to the model, if the present load turned out to need it.
         checks: stability of the state at the end of each load, at first full slip and after each jump, by step.
         states: the accepted states so far. States solved for again (:mod:`fingerpad.accuracy.solves`) have no record of
             a step.
@@ -74,7 +75,7 @@ class Simulation:
         self._passed = 0  # runs of the load at which another process has been, the last of them not to its end
         self._half_kept: dict[str, Any] | None = None
         self._zone = ContactZone(finger, model)
-        self._restart: RestartRequired | None = None
+        self.restart: RestartRequired | None = None
         self._half: HalfFinger | None = None  # while it leads the finger
 
     def run(self) -> RestartRequired | None:
@@ -101,19 +102,14 @@ class Simulation:
                     self._end_half()
                 self._load, self._loads_done = load.name, k
                 self._follow(load)
-                if self._restart is not None:
-                    return self._restart
+                if self.restart is not None:
+                    return self.restart
                 self.on_load()
         finally:  # nothing collective: a rank may be alone here with its error
             if self._half is not None:
                 self._half.count()
         self.checks.free()
         return None
-
-    @property
-    def restart(self) -> RestartRequired | None:
-        """What must be added to the model, if the present load turned out to need it."""
-        return self._restart
 
     @contextmanager
     def aside(self) -> Iterator[None]:
@@ -140,12 +136,12 @@ class Simulation:
         for load in loads:
             self._load = load.name
             for target in targets(load, self._x, self.model.numerics.step_scale):
-                if self._restart is None:
+                if self.restart is None:
                     (self._half or self.finger.continuation).run(target)
-            if self._restart is not None:
+            if self.restart is not None:
                 return
             reached()
-        self._restart = self._symmetry_lost()
+        self.restart = self._symmetry_lost()
 
     def _end_half(self) -> None:
         """Go on with the whole finger."""
@@ -168,7 +164,7 @@ class Simulation:
     def kept(self) -> dict[str, Any]:
         """Return all that another process needs to go on from the accepted state, whole on rank 0; collective.
 
-        The two go on the same to the last bit on one rank, if this one forgets (:meth:`forget`).
+        Both go on the same to the last bit on one rank, if this one forgets (:meth:`forget`).
         """
         return {
             "paths": {name: checkpoint.take(path) for name, path in self._paths().items()},
@@ -206,11 +202,11 @@ class Simulation:
         speed = abs(end - x) / seconds if seconds else 0.0
         self._seconds, self._over_time, self._runs = seconds, load.wave is not None, 0
         for piece in before:
-            if self._restart is None and self._is_next():
+            if self.restart is None and self._is_next():
                 (self._half or path).run(piece)
         self._reach(target)
         slides = direction and target.until_full_slip
-        while slides and self._restart is None and (self._runs < self._passed or path.slip[1]):
+        while slides and self.restart is None and (self._runs < self._passed or path.slip[1]):
             following = self._is_next()
             steady = following and self._slip.slides_on(load.name, direction, speed)
             left = direction * (end - path.begun().control.x)
@@ -235,10 +231,10 @@ class Simulation:
         return min((self._time - self._began) / self._seconds, 1.0) if timed else part
 
     def _reach(self, target: Target) -> None:
-        if self._restart is None and self._is_next():
+        if self.restart is None and self._is_next():
             (self._half or self.finger.continuation).run(target)
-            if self._restart is None:
-                self._restart = self._symmetry_lost()
+            if self.restart is None:
+                self.restart = self._symmetry_lost()
 
     def slip_to(self, target: Target) -> ContactState:
         """Return the state of another full slip, solved for from the present one; collective.
@@ -249,21 +245,15 @@ class Simulation:
         Raises:
             StepFailed: no state was found from there, or more of the skin must be able to touch.
         """
-        self._load, self._restart = target.name, None
+        self._load, self.restart = target.name, None
         self.finger.continuation.run(target)
-        if self._restart is not None:
-            raise StepFailed(f"{target.name}: {self._restart.reason}")
+        if self.restart is not None:
+            raise StepFailed(f"{target.name}: {self.restart.reason}")
         self.energy = self.finger.book()  # what was dissipated on the way is not known
         return self.states[-1]
 
     def present(self, loads: RidgeLoads, attempt: Attempt | None = None, touches: bool = False) -> Step:
-        """Return the present state as a step without a record of energies and work.
-
-        Args:
-            loads: resultants of the ridges, see :meth:`Finger.ridge_loads`.
-            attempt: how it was solved, where that is known.
-            touches: whether the bone was lowered to the first touch.
-        """
+        """Return the present state as a step, see :meth:`Finger.present`; ``touches`` is that of the first touch."""
         return self.finger.present(loads, FIRST_TOUCH if touches else self._load, self._loads_done + 1, attempt)
 
     def _symmetry_lost(self) -> RestartRequired | None:
@@ -286,8 +276,8 @@ class Simulation:
         loads = finger.ridge_loads()
         imbalance = finger.check_balance(loads, self._load)
         if attempt.jump:
-            self._restart = self._symmetry_lost()
-            if self._restart is not None:
+            self.restart = self._symmetry_lost()
+            if self.restart is not None:
                 return True
         step = self.present(loads, attempt, touches)
         record = None
@@ -306,7 +296,7 @@ class Simulation:
         done = min((self._loads_done + part) / len(self.model.loads), 1.0)
         self.on_step(replace(step, state=state, touches=touches, ends=part >= 1), done)
         try:
-            self._restart = self._zone_exceeded(loads)
+            self.restart = self._zone_exceeded(loads)
         except FingerExceeded as error:
             raise StepFailed(f"step {finger.continuation.steps} ({self._load}): {error}") from error
-        return self._restart is not None
+        return self.restart is not None

@@ -37,7 +37,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from fingerpad.model.cautions import BALANCED, sticking
+from fingerpad.model.cautions import sticking
 from fingerpad.reduced.cylinders import over_forces
 from fingerpad.results.quantities import BAND, KNOWN
 from fingerpad.scene import Scene
@@ -47,7 +47,7 @@ from fingerpad.slices.errors import known_at
 from variational.contact.friction import Derjaguin, Friction
 from variational.roughness.bam import BearingArea
 from variational.roughness.boundary_elements import BoundaryElements
-from variational.roughness.closure import Closure
+from variational.roughness.closure import BALANCED, Closure
 from variational.roughness.persson import Persson
 from variational.state import ContactState
 

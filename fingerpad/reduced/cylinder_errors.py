@@ -27,6 +27,7 @@ from fingerpad.scene.keys import every
 from fingerpad.scene.messages import show
 from fingerpad.scene.reading import flat
 from fingerpad.scene.scene import Scene
+from variational.caution import Caution
 from variational.state import ContactState
 
 _Bands = Mapping[str, Mapping[str, float]]
@@ -130,7 +131,7 @@ def outside(scene: Scene, pull: float = 0.0) -> list[Outside]:
     return min(found, key=lambda keys: (len(keys), sum(each.far for each in keys)))
 
 
-def cautions(scene: Scene, pull: float = 0.0) -> list[str]:
+def cautions(scene: Scene, pull: float = 0.0) -> list[Caution]:
     """Return in one sentence why the error is not known, empty where it is known; arguments of :func:`find`.
 
     In place of more than two keys of one table, as of another finger, it names the table.
@@ -139,7 +140,7 @@ def cautions(scene: Scene, pull: float = 0.0) -> list[str]:
     tables = Counter(each.key.partition(".")[0] for each in keys)
     many = {table: Outside(table, "another one", "that of the default scene") for table in tables if tables[table] > 2}
     words = dict.fromkeys(str(many.get(each.key.partition(".")[0], each)) for each in keys)
-    return [f"the error of this model is not known here: {'; '.join(words)}"] if words else []
+    return [Caution("error_unknown", f"the error of this model is not known here: {'; '.join(words)}")] if words else []
 
 
 def _given(scene: Scene, pull: float) -> dict[str, Any]:

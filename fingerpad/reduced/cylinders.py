@@ -32,7 +32,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fingerpad.model.cautions import on_scene, sticking
+from fingerpad.model.cautions import examine, on_scene, sticking
 from fingerpad.reduced import cylinder_errors, default_finger
 from fingerpad.reduced.default_finger import Similar, similar
 from fingerpad.reduced.model import STATES, Model, check_supported, reduced_state
@@ -43,11 +43,12 @@ from fingerpad.results.states import WORDS
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.fingers import ADULT
 from fingerpad.scene.messages import show
-from fingerpad.scene.remarks import coefficient, leakage, used
+from fingerpad.scene.remarks import coefficient, used
 from fingerpad.slices import errors
 from geometry.parameters import Fingertip
 from geometry.profiles import Profiles
 from variational.attraction.cylinder import Cylinder, NoEquilibriumError, RidgeState, hertz_modulus
+from variational.caution import Caution
 from variational.state import ContactState, Errors
 
 if TYPE_CHECKING:
@@ -145,7 +146,7 @@ def solve(scene: Scene) -> Result:
     check_supported(scene, Cylinders.name)
     source, ridges = _source(scene, _scaled(scene)), dict[str, RidgeState]()
     exact = "a closed form, without a mesh: no discretisation error but that of the contact length it is given"
-    cautions, found = list[str](), dict[str, ContactState]()
+    cautions, found = list[Caution](), dict[str, ContactState]()
     for state in STATES:
         ((found[state], ridges[state]),) = _over_forces(scene, [scene.f_ext], state)
         cautions += _others(state, ridges[state])
@@ -156,7 +157,7 @@ def solve(scene: Scene) -> Result:
         exact,
         cylinder_errors.in_words(known),
         "the bone's height is not in this model",
-        *leakage(scene),
+        *map(str, examine("note", scene)),
     )
     gaps = [(WORDS[state], ridge.d_eq, scene.volts) for state, ridge in ridges.items()]
     cautions += on_scene(scene, found.values(), gaps)
@@ -258,12 +259,13 @@ def _pull(slip: ContactState) -> float:
     return slip.f_electrostatic / slip.f_ext
 
 
-def _others(state: str, ridge: RidgeState) -> list[str]:
-    """Return a remark on other equilibria."""
+def _others(state: str, ridge: RidgeState) -> list[Caution]:
+    """Return a caution on other equilibria."""
     if not ridge.others:
         return []
     pressures = ", ".join(f"{p:.4g}" for p in ridge.others)
-    return [f"{WORDS[state]}: further equilibria at a mean pressure of {pressures} Pa, of ridges not on the screen yet"]
+    text = f"{WORDS[state]}: further equilibria at a mean pressure of {pressures} Pa, of ridges not on the screen yet"
+    return [Caution("other_states", text, ridge.others[0])]
 
 
 def tip_radius(finger: Fingertip) -> float:

@@ -1,7 +1,7 @@
 """A model of a scene, and what reduced ones have in common: normal contact and full slip, as a full run has them.
 
 A quantity that is not part of a model is NaN in its states, and a note names it. Your own model is a class with one
-method, :meth:`Model.solve`, and a line in :data:`fingerpad.reduced.registry.MODELS`.
+method, :meth:`Model.solve`, and a line in :data:`fingerpad.runs.solve.MODELS`.
 """
 
 from abc import ABC, abstractmethod

@@ -8,8 +8,6 @@ from typing import Any
 
 import numpy as np
 from markupsafe import Markup
-from matplotlib.path import Path
-from matplotlib.ticker import MaxNLocator
 
 from fingerpad.report.page import render
 from fingerpad.results.headline import notes, span
@@ -22,6 +20,7 @@ _BAR = 0.35  # half of a bar's width, of the distance of two
 _TICK = 0.4  # half of the height of a spike
 _BEFORE, _AFTER, _ROW, _TIP = 112.0, 114.0, 26.0, 14.0  # px: names, numbers, rows and arrows of bars of errors
 _VALUES = (0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1, 1.5, 2, 3, 5, 10, 20, 50, 100)  # ticks of a logarithm
+_BEND = 0.02  # px, between a point and the line of its neighbours that has it
 _APART, _SHORT = 34.0, 3.0  # px: two ticks; the shortest bar
 
 
@@ -111,8 +110,10 @@ def _ends(values: Sequence[float], margin: float, more: float = 0.0) -> tuple[fl
 
 
 def _ticks(low: float, high: float) -> list[float]:
-    found = MaxNLocator(5, steps=[1, 2, 5, 10]).tick_values(low, high)
-    return [float(f"{value:.6g}") for value in found if low <= value <= high]
+    """Return at most seven multiples of 1, 2 or 5 times a power of ten within a scale."""
+    power = 10.0 ** math.floor(math.log10((high - low) / 6))
+    step = next(power * factor for factor in (1, 2, 5, 10) if power * factor * 6 >= high - low)
+    return [float(f"{k * step:.6g}") for k in range(math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9) + 1)]
 
 
 def _panel(panel: Panel, top: float, across: Any) -> dict[str, Any]:
@@ -169,13 +170,18 @@ def _drawn(series: Series, place: int, groups: int, across: Any, up: Any) -> dic
 
 
 def _line(points: Any) -> str:
-    """Return a line through points (px) with no more of them than can be seen, broken at NaN."""
-    path = Path(points)
-    path.should_simplify, path.simplify_threshold = True, 1 / 9
-    thin = path.cleaned(simplify=True, remove_nans=True)
-    codes = {Path.MOVETO: "M", Path.LINETO: "L"}
-    pairs = zip(thin.codes if thin.codes is not None else (), thin.vertices, strict=False)
-    return "".join(f"{codes[code]}{x:.1f} {y:.1f}" for code, (x, y) in pairs if code in codes)
+    """Return a line through points (px), broken at NaN, without those that are on the way between their neighbours."""
+    found, begins = list[str](), True
+    for k, (x, y) in enumerate(points):
+        if math.isnan(x + y):
+            begins = True
+            continue
+        (x0, y0), (x1, y1) = points[max(k - 1, 0)], points[min(k + 1, len(points) - 1)]
+        straight = abs((x - x0) * (y1 - y0) - (y - y0) * (x1 - x0)) <= _BEND * math.hypot(x1 - x0, y1 - y0)
+        if begins or not straight or k == len(points) - 1:  # NaN beside a point is not straight
+            found.append(f"{'M' if begins else 'L'}{x:.1f} {y:.1f}")
+        begins = False
+    return "".join(found)
 
 
 def bars(kept: Mapping[str, Any], error: float, of: str) -> Markup:

@@ -5,9 +5,10 @@ import json
 import re
 import shlex
 from collections.abc import Collection, Mapping
-from functools import cache
+from functools import cache, reduce
 from importlib.resources import files
 from io import BytesIO
+from operator import getitem
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
 from fingerpad.results.quantities import SYMBOL
-from fingerpad.scene import Scene, SceneError, changed_keys, override
+from fingerpad.scene import Scene, changed_keys
 from fingerpad.scene.keys import by_name
 from fingerpad.scene.reading import DEFAULT_MODEL, flat
 from variational.files import read
@@ -122,50 +123,38 @@ def parameters(of: Mapping[str, Any], varied: Collection[str] = ()) -> list[tupl
     return rows
 
 
-def again(of: Mapping[str, Any], model: str) -> str:
-    """Return the command that repeats a run, or Python where its scene does not fit on a command line.
+def recipe(of: Mapping[str, Any], model: str, axes: Mapping[str, list[Any]] | None = None, option: str = "") -> str:
+    """Return a scene file and the command that repeats a run or a sweep with it.
 
     Args:
-        of: parameters of its scene.
+        of: parameters of the scene.
         model: that was used.
+        axes: values of each key that is varied; None of a run.
+        option: another one of the command.
     """
-    given = {key: value for key, (value, _) in changed_keys(of).items() if key != "model"}
-    if any("[" in key or isinstance(value, list) or value is None for key, value in given.items()):
-        return (
-            'import fingerpad as fp\n\nscene = fp.Scene.load("scene.json")  # in this folder\n'
-            f'fp.run(scene, model={json.dumps(model)}, out="results/again")'
-        )
-    options = [option_of(key, value) for key, value in given.items()]
-    return " ".join(["fingerpad run", *options, *model_option(model), "--out results/again"])
+    over, lines = axes or {}, list[str]()
+    for key in dict.fromkeys(name.partition("[")[0] for name in changed_keys(of)):  # a list as a whole
+        value = reduce(getitem, key.split("."), of)
+        if value is not None and key != "model" and key not in over:
+            lines.append(f"{key} = {_toml(value)}")
+    lines += ["[sweep]", *(f"{_toml(key)} = {_toml(values)}" for key, values in over.items())] if over else []
+    named = "" if model == DEFAULT_MODEL else f"--model {shlex.quote(model)}"
+    parts = (
+        "fingerpad",
+        "sweep" if over else "run",
+        "mine.toml" if lines else "",
+        named,
+        option,
+        "--out results/again",
+    )
+    words = " ".join(filter(None, parts))
+    return "\n".join(["# mine.toml", *lines, "", "# the command", words] if lines else [words])
 
 
-def model_option(model: str) -> list[str]:
-    """Return the option of a model; none of the default one."""
-    return [] if model == DEFAULT_MODEL else [f"--model {shlex.quote(model)}"]
-
-
-def option_of(key: str, value: Any, option: str = "--set") -> str:
-    """Return a key and its value as an option of a command line, quoted for a shell.
-
-    Args:
-        key: a dotted key.
-        value: a number, a switch, a text or a list of these; of another option than ``--set``, its text as it stands.
-        option: which takes ``KEY=VALUE``.
-    """
-    shown = value if option != "--set" else _bare(value) if isinstance(value, str) else toml(value)
-    return f"{option} {shlex.quote(f'{key}={shown}')}"
-
-
-def toml(value: Any) -> str:
-    """Return a number, a switch, a text or a list of these as TOML."""
+def _toml(value: Any) -> str:
+    """Return a number, a switch, a text, or a list or a table of these as TOML."""
+    if isinstance(value, Mapping):
+        return f"{{{', '.join(f'{key} = {_toml(each)}' for key, each in value.items() if each is not None)}}}"
     if isinstance(value, list | tuple):
-        return f"[{', '.join(map(toml, value))}]"
+        return f"[{', '.join(map(_toml, value))}]"
     return json.dumps(value, ensure_ascii=False) if isinstance(value, str | bool) else repr(value)
-
-
-def _bare(text: str) -> str:
-    """Return a text as ``--set`` reads it: without quotation marks, where it would be nothing else without them."""
-    try:
-        return text if override(f"key={text}")[1] == text else toml(text)
-    except SceneError:
-        return toml(text)

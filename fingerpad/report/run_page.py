@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 from markupsafe import Markup
 
-from fingerpad.reduced.registry import MODELS
 from fingerpad.report import page as html
 from fingerpad.report import trust
 from fingerpad.report.charts import Panel, Series, bars, chart
@@ -53,10 +52,10 @@ def page(result: Result) -> str:
         band=band_in_words(result.record.get(BAND, {})), sliding=_sliding(result), over_time=_over_time(result),
         receptors=_receptors(result), spikes=spikes, raster=None if spikes is None else _raster(result, spikes),
         note=NOTE, refusal=refusal, pictures=[each for each in pictures if each != face], laws=_laws(result),
-        model=MODELS[result.model].words if result.model in MODELS else "A model that is not registered here",
+        model=result.model_words,
         omitted=[f"{each['what']}: {each['reason']}" for each in result.record.get("omitted") or []],
         work=_work(result), cost=_cost(result), parameters=html.parameters(result.parameters), versions=versions,
-        again=html.again(result.parameters, result.model),
+        again=html.recipe(result.parameters, result.model),
     )  # fmt: skip
 
 

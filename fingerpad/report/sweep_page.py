@@ -1,10 +1,7 @@
 """The table of a sweep and its report: friction and contact over what was varied, every point, and what failed."""
 
-import csv
-import io
 import math
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -30,18 +27,17 @@ from fingerpad.runs.sweep_columns import (
     shown,
     tables,
 )
-from fingerpad.scene import SceneError, changed_keys
+from fingerpad.scene import SceneError
 from fingerpad.scene.messages import clip
 from fingerpad.scene.reading import DEFAULT_MODEL, model_name
 from fingerpad.slices.errors import remarks
-from variational.files import read
 
 _CHARTS = dict.fromkeys(key for key in (*in_table("short"), *in_table("first", FINGER)) if key != "f_ext")
 _MAX_CAUTIONS = 3  # in the headline
 _MAX_VALUES = 6  # of a key in the headline
 _RUBS = 1e-6  # µ_app that is no roundoff
 _IN_TIME = ("mu_app_max", "mu_app_mean", "f_t_amplitude")  # columns with a chart of a load over time, behind its name
-_RESULTS = ("uncharged_", "charged_", "full_slip_", "load_")
+FILE = "sweep.json"
 
 
 @dataclass(frozen=True)
@@ -99,44 +95,28 @@ class Table:
 
 
 def table_of(folder: Path) -> Table:
-    """Return the table of the sweep in a folder.
+    """Return the table of the sweep in a folder, from ``sweep.json``.
 
     Raises:
         SceneError: it cannot be read.
     """
     name = clip(str(folder), 80)
     try:
-        reader = csv.DictReader(io.StringIO(read(folder / "table.csv").decode(), newline=""))
-        texts, columns = list(reader), list(reader.fieldnames or ())
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise SceneError(f"the table of {name} cannot be read: {error}") from None
-    axes = tuple(key for key in columns if not key.startswith(_RESULTS) and key != "failure")
-    if "failure" not in columns or not axes or not texts:
-        raise SceneError(f"table.csv in {name} is not the table of a sweep of fingerpad, or is cut short")
-    if any(None in row or None in row.values() for row in texts):
-        raise SceneError(f"table.csv in {name} is cut short; give the command of the sweep again to write it anew")
-    rows = tuple({key: text if key == "failure" else _value(text) for key, text in row.items()} for row in texts)
-    try:
-        asked = read_object(folder / "sweep.json")
-        refuse_other_format(asked, f"the sweep in {name}")
-        more = model_name(asked["model"]), str(asked.get("version", ""))
-        cautions, notes = (tuple(map(str, asked.get(name, ()))) for name in ("cautions", "notes"))
-        outputs = tuple(Output(**each) for each in asked.get("outputs", ()))
-        return Table(folder, axes, rows, dict(asked["parameters"]), *more, cautions, notes, outputs)
+        found = read_object(folder / FILE)
+        refuse_other_format(found, f"the sweep in {name}")
+        axes, rows = tuple(found["axes"]), tuple(found["rows"])
+        if not (axes and rows and all({*axes, "failure"} <= row.keys() == rows[0].keys() for row in rows)):
+            raise ValueError("its rows have no value of a varied key")
+        texts = (tuple(map(str, found[key])) for key in ("cautions", "notes"))
+        outputs = tuple(Output(**each) for each in found["outputs"])
+        about = dict(found["parameters"]), model_name(found["model"]), str(found.get("version", ""))
+        return Table(folder, axes, rows, *about, *texts, outputs)
     except KeyError as missing:
-        raise SceneError(f"sweep.json in {name} has no {missing}; give the command of the sweep again") from None
+        raise SceneError(f"{FILE} in {name} has no {missing}; give the command of the sweep again") from None
     except SceneError:
         raise
-    except (OSError, ValueError, TypeError) as error:
-        raise SceneError(f"sweep.json in {name} cannot be read: {error}") from None
-
-
-def _value(text: str) -> Any:
-    """Return what a cell of a table holds: a number, a switch or a text; None where it is empty or not finite."""
-    for kind in (int, float):
-        with suppress(ValueError):
-            return number if math.isfinite(number := kind(text)) else None
-    return {"": None, "True": True, "False": False}.get(text, text)
+    except (OSError, ValueError, TypeError, AttributeError) as error:
+        raise SceneError(f"{FILE} in {name} cannot be read: {error}; give the command of the sweep again") from None
 
 
 def page(table: Table) -> str:
@@ -148,7 +128,7 @@ def page(table: Table) -> str:
                  for name, (heads, *rows) in tables(table.rows, table.heads)]  # fmt: skip
     failed = [(", ".join(f"{key} = {printed(row[key])}" for key in table.axes), row["failure"]) for row in table.rows
               if row["failure"]]  # fmt: skip
-    code, lists = _again(table)
+    alone = "--states full_slip" if "full_slip_reached" in table.rows[0] else ""
     return html.page(
         "sweep.html", f"fingerpad: sweep over {', '.join(table.axes)}", name=table.folder.resolve().name,
         sentence=sentence, said=said, verdict=_verdict(table), state=state, of=description(columns),
@@ -156,7 +136,7 @@ def page(table: Table) -> str:
         heads=[*table.heads.values(), *(quantity.title for quantity in columns.values()), ""], points=_points(table),
         remarks=[*remarks(dict.fromkeys(table.forces())), *([] if table.whole else [PER_LENGTH])],
         notes=[*table.notes, *table.cautions], failed=failed, parameters=html.parameters(table.parameters, table.axes),
-        again=code, lists=lists, version=table.version,
+        again=html.recipe(table.parameters, table.model, table.values(), alone), version=table.version,
     )  # fmt: skip
 
 
@@ -229,7 +209,7 @@ def _charts(table: Table) -> dict[str, Any]:
     for name in loads(table.rows[0]):
         words = in_time(name, table.rows[0])
         columns = [f"{LOAD}_{name}_{key}" for key in _IN_TIME]
-        titles |= {column: (words[column], 1.0) for column in columns if column in words}
+        titles |= {column: (words[column].title, 1.0) for column in columns if column in words}
     return {column: _chart(table, column, *title) for column, title in titles.items()}
 
 
@@ -283,20 +263,3 @@ def _points(table: Table) -> list[list[str]]:
         said = "failed" if row["failure"] else "" if table.reached(row) else f"no {state}"
         rows.append([*(printed(row[key]) for key in table.axes), *cells, said])
     return rows
-
-
-def _again(table: Table) -> tuple[str, bool]:
-    """Return the command that repeats the sweep, and whether lists of the scene are not in it."""
-    given = {key: value for key, (value, _) in changed_keys(table.parameters).items()}
-    kept = {key: value for key, value in given.items() if not (key in table.axes or "[" in key or value is None)}
-    options = [*(html.option_of(key, value) for key, value in kept.items()), *html.model_option(table.model)]
-    options += ["--states full_slip"] if any("full_slip_reached" in row for row in table.rows) else []
-    values = table.values()
-    if all(type(value) in (int, float) for each in values.values() for value in each):
-        over = [html.option_of(key, ",".join(map(repr, each)), "--over") for key, each in values.items()]
-        code = " ".join(["fingerpad sweep", *options, *over, "--out results/again"])
-    else:  # --over reads numbers alone
-        lines = [f"{html.toml(key)} = {html.toml(each)}" for key, each in values.items()]
-        command = " ".join(["fingerpad sweep study.toml", *options, "--out results/again"])
-        code = "\n".join(["# study.toml", "[sweep]", *lines, "", "# the command", command])
-    return code, any("[" in key and key not in table.axes for key in given)

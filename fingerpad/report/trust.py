@@ -6,7 +6,6 @@ from typing import NamedTuple
 
 from fingerpad.accuracy.richardson import FEW_FACETS
 from fingerpad.reduced.cylinder_errors import in_words
-from fingerpad.reduced.registry import follows_path
 from fingerpad.report.page import BAD, CARE, GOOD
 from fingerpad.results.headline import why_not_known
 from fingerpad.results.quantities import KNOWN
@@ -32,7 +31,7 @@ class Finding(NamedTuple):
 def findings(result: Result) -> list[Finding]:
     """Return what was looked at, in the order in which a reader needs it."""
     found = [_end(result), *_full_slip(result), *_not_known(result)]
-    if not follows_path(result.model):
+    if not result.follows_path:
         words = f"The model is {result.model!r}, a cheaper one; {in_words(result.record.get('model_error', {}))}."
         return [*found, Finding("model", CARE, words), *_cautions(result)]
     for examined in (_cautions, _mesh, _over_time, _balance, _stability, _jumps, _restarts):
@@ -55,7 +54,7 @@ def verdict(found: list[Finding]) -> tuple[str, str]:
 
 
 def _cautions(result: Result) -> Iterator[Finding]:
-    for text in result.cautions:
+    for text in map(str, result.cautions):
         key = {".", "_"} & set(text.split(" ", 1)[0])  # a key of the scene begins the sentence, spelled as it is
         yield Finding("limit of validity", CARE, f"{text[0] if key else text[0].upper()}{text[1:].removesuffix('.')}.")
 
@@ -68,7 +67,7 @@ def _end(result: Result) -> Finding:
 
 
 def _full_slip(result: Result) -> Iterator[Finding]:
-    if result.full_slip is not None and follows_path(result.model):
+    if result.full_slip is not None and result.follows_path:
         words = "Every point in contact slips one way, and the forces stayed the same over a further 0.2 mm."
         yield Finding("full slip", GOOD, words)
     elif how := result.missing_slip:

@@ -4,7 +4,6 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fingerpad.reduced.registry import MODELS
 from fingerpad.results.files import replace
 from fingerpad.results.result import Result
 from fingerpad.scene import SceneError
@@ -50,9 +49,13 @@ def of_result(result: Result) -> None:
 
 
 def _page(found: "Result | Table") -> str:
-    from fingerpad.report import run_page, sweep_page  # Matplotlib and Jinja
+    if isinstance(found, Result):
+        from fingerpad.report import run_page  # Matplotlib
 
-    return run_page.page(found) if isinstance(found, Result) else sweep_page.page(found)
+        return run_page.page(found)
+    from fingerpad.report import sweep_page  # Jinja
+
+    return sweep_page.page(found)
 
 
 def attempt(folder: Path) -> Path | None:
@@ -76,13 +79,12 @@ def read(folder: Path) -> "Result | Table":
         raise SceneError(f"{name} is not a folder; give one that fingerpad run or fingerpad sweep wrote")
     if any((folder / kept).exists() for kept in ("result.nc", "summary.json")):
         return Result.load(folder)
-    if (folder / "table.csv").exists():
+    if (folder / "sweep.json").exists():
         from fingerpad.report.sweep_page import table_of
 
         return table_of(folder)
-    points = [folder / name for name, model in MODELS.items() if model.meshes and (folder / name).is_dir()]
-    done = sum(1 for place in points for _ in place.glob("*/summary.json"))
-    if done or any(any(place.glob("*/asked.json")) for place in points):
+    done = sum(1 for _ in folder.glob("*/*/summary.json"))  # of points, by model
+    if done or any(folder.glob("*/*/asked.json")):
         raise SceneError(f"the sweep in {name} has not ended ({done} runs are there); give its command again to go on")
     if (folder / "scene.json").exists():
         raise SceneError(f"the run in {name} has not ended; make the report when it has, or go on with it by --resume")

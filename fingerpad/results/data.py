@@ -22,14 +22,18 @@ from fingerpad.results.quantities import (
 )
 from fingerpad.results.states import STATES, LoadResult
 from fingerpad.scene.messages import SceneError, show
+from fingerpad.scene.reading import DEFAULT_MODEL
+from variational.caution import Caution
 from variational.state import ContactState, StepRecord
 
 if TYPE_CHECKING:
     from fingerpad.scene import Scene
     from fingerpad.slices.finger import WholeFinger
 
-MODEL_ERROR = "model_error"
-"""Key of a cheaper model's known errors in a result's record."""
+MODEL_ERROR, MODEL_WORDS = "model_error", "model_words"
+"""Keys of a cheaper model's known errors, and of what it is made of, in a result's record."""
+FULL_WORDS = "Every ridge of the cross-section"
+"""What the full model is made of."""
 
 
 class Number(NamedTuple):
@@ -84,7 +88,7 @@ class ResultData:
     """Name of the signal that ended the run, else empty."""
     notes: tuple[str, ...] = ()
     """Remarks on the result: sources and omissions."""
-    cautions: tuple[str, ...] = ()
+    cautions: tuple[Caution, ...] = ()
     """Why the numbers may be further off than their errors say: limits of validity that the scene reaches."""
     record: dict[str, Any] = field(default_factory=dict)
     """All else, ready for JSON: omissions, restarts, refinement, laws, provenance."""
@@ -145,9 +149,15 @@ class ResultData:
         return self.scene.force is not None
 
     @property
-    def last(self) -> ContactState | None:
-        """The last accepted state; without a loading path the last named state."""
-        return self.steps[-1] if self.steps else (self.full_slip or self.charged or self.uncharged)
+    def follows_path(self) -> bool:
+        """Whether the model follows the loads step by step: the full one alone."""
+        return self.model == DEFAULT_MODEL
+
+    @property
+    def model_words(self) -> str:
+        """What the model is made of, a sentence without its full stop."""
+        words = FULL_WORDS if self.follows_path else self.record.get(MODEL_WORDS, "A model that is not registered here")
+        return str(words)
 
     @property
     def printed(self) -> dict[str, Output]:

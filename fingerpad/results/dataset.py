@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fingerpad.results import files, quantities
+from fingerpad.results import files
 from fingerpad.results.data import ResultData
 from fingerpad.results.quantities import (
     CHANGES,
@@ -24,6 +24,7 @@ from fingerpad.results.quantities import (
     SITES,
     SKIN,
     SLICES,
+    SPECTRUM,
     STABILITY,
     STEPS,
     STIMULI,
@@ -31,7 +32,7 @@ from fingerpad.results.quantities import (
 )
 from fingerpad.results.states import STATES, UNLOADED
 from fingerpad.scene.reading import flat
-from variational.state import PATH, ContactState, Errors, Sites
+from variational.state import PATH, ContactState, Errors, RidgeStates, Sites, Stimuli
 
 if TYPE_CHECKING:
     import xarray
@@ -45,6 +46,12 @@ Variables = dict[str, tuple[tuple[str, ...], Any, dict[str, str]]]
 OF_RIDGES = {name: "length" if name == "contact_length" else name for name in RIDGES}
 OF_SITES = dict(zip(SITES, [each.name for each in fields(Sites)][1:], strict=True))
 """Attribute of :class:`RidgeStates`, and of :class:`Sites`, by quantity."""
+BY_RIDGE: dict[str, tuple[type[Any], str, dict[str, str]]] = {
+    "ridges": (RidgeStates, "ridge_", OF_RIDGES),
+    "sites": (Sites, "", OF_SITES),
+    "stimuli": (Stimuli, "", {name: name for name in STIMULI}),
+}
+"""By attribute of a state: class, begin of the names of its variables, and attributes by quantity."""
 CHANGED = tuple(field.name for field in fields(Errors) if field.name != "own")
 
 
@@ -91,8 +98,12 @@ def attributes(result: ResultData) -> dict[str, Any]:
     found: dict[str, Any] = {"title": "fingerpad: a fingertip on a touchscreen", "format": files.FORMAT}
     found |= {"model": result.model, **asdict(result.cost)}
     found |= {name: text for name in ("failure", "interrupted") if (text := getattr(result, name))}
-    for name in ("notes", "cautions"):
-        found |= {name: "\n".join(getattr(result, name))} if getattr(result, name) else {}
+    found |= {
+        name: "\n".join(map(str, getattr(result, name))) for name in ("notes", "cautions") if getattr(result, name)
+    }
+    if result.cautions:
+        found["caution_codes"] = "\n".join(each.code for each in result.cautions)
+        found["caution_numbers"] = [np.nan if each.number is None else float(each.number) for each in result.cautions]
     found |= {"record": json.dumps(result.record)} if result.record else {}
     found |= {"outputs": json.dumps([each.to_dict() for each in result.outputs])} if result.outputs else {}
     if result.finger is not None:
@@ -154,19 +165,14 @@ def _of_states(
         about = known.get(name, Output(name, "")).about()
         found["load_name" if prefix + name == "load" else prefix + name] = (dim,), values, about
     place = {number: k for k, number in enumerate(numbers)}
-    groups = (
-        ("ridges", f"{prefix}ridge_", RIDGES, OF_RIDGES),
-        ("sites", prefix, SITES, OF_SITES),
-        ("stimuli", prefix, STIMULI, {name: name for name in STIMULI}),
-    )
-    for group, start, outputs, names in groups:
-        given = [(k, each) for k, s in enumerate(states) if s is not None and (each := getattr(s, group)) is not None]
-        for name, output in outputs.items() if given else ():
+    for group, (_, start, attributes) in BY_RIDGE.items():
+        given = [(k, each) for k, state in enumerate(states) if (each := getattr(state, group, None)) is not None]
+        for name, attribute in attributes.items() if given else ():
             values = filled([len(states), len(numbers)], np.dtype("O" if name == "note" else "f8"))
             for k, each in given:
-                if len(mine := getattr(each, names[name])):
+                if len(mine := getattr(each, attribute)):
                     values[k, [place[int(j)] for j in each.number]] = mine
-            found[start + name] = (dim, "ridge"), values, output.about()
+            found[prefix + start + name] = (dim, "ridge"), values, (RIDGES | SITES | STIMULI)[name].about()
     if f"{prefix}meissner_left" in found:
         (dims, left, _), (_, right, _) = (found.pop(f"{prefix}meissner_{side}") for side in ("left", "right"))
         about = SITES["merkel_sed"].about() | {"long_name": "strain energy density at the Meissner sites of the ridge"}
@@ -178,20 +184,17 @@ def _verdicts(named: Sequence[ContactState | None], known: Mapping[str, Output])
     """Return stability, errors and changes of the named states; of outputs of one's own where they are known."""
     found: Variables = {}
     for name, output in STABILITY.items():
-        given = [None if state is None else getattr(state, name) for state in named]
-        if name == "stable":
-            values = np.array([-1 if each is None else each for each in given], np.int32)
-        else:
-            values = _column(given)
-        found[f"state_{name}"] = ("state",), values, output.about()
-    ways = np.array(["" if state is None else state.reached for state in named], object)
-    found["state_reached"] = ("state",), ways, _about("how the state was reached, by its path or from another state")
-    for kind, words in CHANGES.items():
-        every = (getattr(state, kind).own for state in named if state is not None)
-        own = {key: None for each in every for key in each if key in known}  # outputs come after their errors
+        kind = int if name == "stable" else float
+        given = [None if (each := getattr(state, name, None)) is None else kind(each) for state in named]
+        found[f"state_{name}"] = ("state",), _column(given, kind()), output.about()
+    about = _about("how the state was reached, by its path or from another state")
+    found["state_reached"] = ("state",), _column([getattr(state, "reached", None) for state in named], ""), about
+    for change, words in CHANGES.items():
+        every = [getattr(state, change, None) for state in named]
+        own = dict.fromkeys(key for each in every if each for key in each.own if key in known)  # after their errors
         for key in (*CHANGED, *own):
-            changes = [None if state is None else getattr(getattr(state, kind), key, None) for state in named]
-            found[f"state_{key}_{kind}"] = ("state",), _column(changes), known[key].about(f"{words} of the ")
+            changes = [getattr(each, key, None) for each in every]
+            found[f"state_{key}_{change}"] = ("state",), _column(changes), known[key].about(f"{words} of the ")
     return found
 
 
@@ -213,16 +216,16 @@ def _loads(result: ResultData, known: Mapping[str, Output]) -> Variables:
     loads, passed = result.loads, [load.over_time for load in result.loads]
     found: Variables = {}
 
-    def add(name: str, values: Sequence[Any], about: dict[str, str]) -> None:
-        found[name] = ("load",), _column(values), about
+    def add(name: str, values: Sequence[Any], about: dict[str, str], example: Any = math.nan) -> None:
+        found[name] = ("load",), _column(values, example), about
 
     add("load", [load.name for load in loads], STEPS["load"].about())
     add("load_last_step", [load.end.step for load in loads], _about("last step of the load"))
     for word in ("reached", "held"):
         values = [getattr(load, f"full_slip_{word}") for load in loads]
         add(f"load_full_slip_{word}", values, _about(f"whether full slip was {word} in the load"))
-    stable = [-1 if load.stable is None else int(load.stable) for load in loads]
-    add("load_stable", stable, _about("whether the state at the end of the load is stable; -1 where not examined"))
+    stable = [None if load.stable is None else int(load.stable) for load in loads]
+    add("load_stable", stable, _about("whether the state at the end of the load is stable; -1 where not examined"), 0)
     for name in dict.fromkeys(name for load in loads for name in load.extremes):
         for end, words in (("min", "least"), ("max", "largest")):
             values = [getattr(load.extremes.get(name), end, math.nan) for load in loads]
@@ -234,7 +237,7 @@ def _loads(result: ResultData, known: Mapping[str, Output]) -> Variables:
     for name in next(filter(None, passed)).mean:
         values = [None if each is None else each.mean[name] for each in passed]
         add(f"load_{name}_mean", values, known[name].about("mean over time in the load: "))
-    for name, output in quantities.SPECTRUM.items():
+    for name, output in SPECTRUM.items():
         table = _padded([None if each is None else getattr(each, name) for each in passed])
         if table.shape[1]:
             numbers = np.arange(1, table.shape[1] + 1, dtype=np.int32)
@@ -306,11 +309,12 @@ def values(result: ResultData) -> dict[str, Any]:
 
 def summary(result: ResultData) -> dict[str, Any]:
     """Return a result without its headline as ``summary.json`` has it."""
-    last = result.last
+    last = result.steps[-1] if result.steps else next(reversed(result.named.values()), None)
     found: dict[str, Any] = {"format": files.FORMAT, "model": result.model, "full_slip": result.full_slip is not None}
     found |= {key: 0.0 if last is None else getattr(last, key) for key in ("f_ext", "voltage")}
     found |= asdict(result.cost) | values(result) | ({} if result.finger is None else result.finger.flat())
     found |= {f"{name}_reached": each.reached for name, each in result.named.items() if each.reached != PATH}
     found |= {"parameters": result.scene.parameters()} | result.record
     found |= {name: text for name in ("failure", "interrupted") if (text := getattr(result, name))}
-    return found | {name: list(kept) for name in ("notes", "cautions") if (kept := getattr(result, name))}
+    found |= {name: list(map(str, kept)) for name in ("notes", "cautions") if (kept := getattr(result, name))}
+    return found | ({"caution_codes": [each.code for each in result.cautions]} if result.cautions else {})

@@ -3,7 +3,7 @@ r"""What mechanoreceptive afferents answer to a run over time: stimuli at its si
 Stimuli are known in the accepted states. Between two of a load they follow the monotone cubic curve of Fritsch and
 Carlson, cut at the ends of loads; a jump of the voltage takes half a sample. The state at t = 0 is taken as a steady
 state. A class is refused where two states are further apart than its ``longest_step`` and its stimulus changes between
-them by more than :data:`CHANGE` of its range.
+them by more than a hundredth of its range.
 """
 
 import math
@@ -22,8 +22,7 @@ from fingerpad.scene.messages import SceneError, show
 from variational.state import ContactState
 
 Array = NDArray[np.float64]
-CHANGE = 0.01
-"""Part of the range of a stimulus that may change between two states, however far they are apart."""
+_CHANGE = 0.01  # of the range of a stimulus, which may change between two states however far they are apart
 _SITE_ERROR = 0.22
 """Largest known error of energy densities at three Merkel sites on the mesh of the default path, 20 µm in contact and
 at the sites (``again`` in docs/errors.json)."""
@@ -51,8 +50,8 @@ def afferents(result: ResultData, laws: str | Afferent | Iterable[str | Afferent
     if not chosen:
         raise SceneError("no class of afferents is given; give one at least, such as 'SA1'")
     states = _states(result)
+    ridges, at_states = _histories(states)
     time, loads = np.array([state.time for state in states]), [state.load for state in states]
-    at_states = _histories(states)
     scale, notes = result.scene.numerics.step_scale, [_mesh(result, states)]
     fine: Array = np.arange(int(time[-1] / _SAMPLE * (1 + 1e-9)) + 1, dtype=np.float64) * _SAMPLE
     units: list[Unit] = []
@@ -68,13 +67,13 @@ def afferents(result: ResultData, laws: str | Afferent | Iterable[str | Afferent
                 raise SceneError(coarse)
             continue
         trains += law.spikes(_between(time, loads, stimulus, fine), _SAMPLE)
-        units += _units(name, law, at_states[law.site], _ridges(states), len(units))
+        units += _units(name, law, at_states[law.site], ridges, len(units))
     if not units:
         raise SceneError(refusals[0])
     notes += [f"Left out: {coarse}." for coarse in refusals]
-    spans = tuple(_spans(time, loads))
-    ridges = tuple(int(number) for number in _ridges(states))
-    densities = Densities(ridges, time, at_states["merkel"].sed)
+    parts = [list(group) for _, group in groupby(range(1, len(time)), key=lambda k: loads[k])]
+    spans = tuple(Span(loads[part[0]], float(time[part[0] - 1]), float(time[part[-1]])) for part in parts)
+    densities = Densities(tuple(map(int, ridges)), time, at_states["merkel"].sed)
     return Spikes(tuple(units), tuple(trains), float(time[-1]), spans, tuple(notes), densities)
 
 
@@ -96,15 +95,11 @@ def _states(result: ResultData) -> list[ContactState]:
     return without_parts_of_jumps(states[begin:])
 
 
-def _ridges(states: Sequence[ContactState]) -> NDArray[np.int64]:
-    """Return the numbers of the ridges that can touch."""
-    stimuli = states[0].stimuli
-    assert stimuli is not None
-    return stimuli.number[np.isfinite(stimuli.surface_strain_left)]
+def _histories(states: Sequence[ContactState]) -> tuple[NDArray[np.int64], dict[str, History]]:
+    """Return the numbers of the ridges that can touch, and the stimuli below them in each state by kind of site.
 
-
-def _histories(states: Sequence[ContactState]) -> dict[str, History]:
-    """Return the stimuli in each state by kind of site; below the ridges that can touch, left and right in turn."""
+    Those to the left and to the right of a ridge are in turn.
+    """
     first = states[0].stimuli
     assert first is not None
     there = np.isfinite(first.surface_strain_left)
@@ -114,13 +109,11 @@ def _histories(states: Sequence[ContactState]) -> dict[str, History]:
         return np.stack(columns, axis=1).reshape(-1, len(states))
 
     strain = rows("surface_strain_left", "surface_strain_right")
-    over = (strain[::2] + strain[1::2]) / 2
+    stress, sed = rows("meissner_stress_left", "meissner_stress_right"), rows("left", "right", of="sites")
     nothing = np.full((int(there.sum()), len(states)), np.nan)
-    return {
-        "merkel": History(rows("merkel_stress"), rows("merkel", of="sites"), over),
-        "meissner": History(
-            rows("meissner_stress_left", "meissner_stress_right"), rows("left", "right", of="sites"), strain
-        ),
+    return first.number[there], {
+        "merkel": History(rows("merkel_stress"), rows("merkel", of="sites"), (strain[::2] + strain[1::2]) / 2),
+        "meissner": History(stress, sed, strain),
         "pacinian": History(rows("pacinian_stress"), nothing, nothing),
     }
 
@@ -128,7 +121,7 @@ def _histories(states: Sequence[ContactState]) -> dict[str, History]:
 def _too_coarse(law: Afferent, stimulus: Array, time: Array, loads: Sequence[str], scale: float) -> str:
     """Return in a sentence that two states are too far apart for a class; empty where none are."""
     apart = np.diff(time)
-    changes = np.abs(np.diff(stimulus, axis=1)).max(axis=0) > CHANGE * np.ptp(stimulus, axis=1).max()
+    changes = np.abs(np.diff(stimulus, axis=1)).max(axis=0) > _CHANGE * np.ptp(stimulus, axis=1).max()
     wide = np.where(changes & (apart > law.longest_step * (1 + 1e-9)), apart, 0.0)
     if not wide.any():
         return ""
@@ -169,13 +162,6 @@ def _units(name: str, law: Afferent, history: History, ridges: NDArray[np.int64]
     if count == len(ridges):
         return [Unit(first + k, name, int(number), "") for k, number in enumerate(ridges)]
     return [Unit(first + k, name, int(ridges[k // 2]), _SIDES[k % 2]) for k in range(count)]
-
-
-def _spans(time: Array, loads: Sequence[str]) -> Iterable[Span]:
-    """Yield name, begin and end of each load."""
-    for name, group in groupby(range(1, len(time)), key=lambda k: loads[k]):
-        part = list(group)
-        yield Span(name, float(time[part[0] - 1]), float(time[part[-1]]))
 
 
 def _mesh(result: ResultData, states: Sequence[ContactState]) -> str:

@@ -6,34 +6,30 @@ and ``motion``, see :mod:`fingerpad.results.pictures.animation`. Tensors have 32
 """
 
 import zipfile
-import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from io import BytesIO
 from pathlib import Path
-from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fingerpad.results import files
-from fingerpad.results.quantities import SKIN
 from fingerpad.results.states import by_load, shown
 from variational.files import read as read_bytes
+from variational.snapshot import Snapshot
 from variational.state import ContactState, Skin
 
 if TYPE_CHECKING:
     from pyvista import MultiBlock, UnstructuredGrid
-
-    from variational.snapshot import Snapshot
 
 Array = NDArray[np.float64]
 Along = Skin | Mapping[str, Array]
 """The skin of a state, or its arrays by the names of :data:`ALONG`, as a file has them."""
 Groups = Mapping[str, Mapping[str, Any]]
 FILE = "fields.npz"
-ALONG = (*(name.removesuffix("_n").removesuffix("_t") for name in SKIN), "d_eq", "ridge")
+ALONG = ("x", "y", "p", "t", "p_el", "d_eq", "ridge")
 """Arrays of the skin along a state, see :class:`fingerpad.results.pictures.curves.SurfaceProfile`."""
 _LEVEL = 1  # of compression: the next ones take longer and save little
 _TRIANGLE = 5  # VTK's number of this cell
@@ -50,20 +46,20 @@ class View:
     """Contact size (m) of its mesh, where the title has it."""
     skin: Along | None
     """None on ranks other than 0, as the next."""
-    snapshot: "Snapshot | None"
+    snapshot: Snapshot | None
     merkel: Array | None
     """Current places (m) of the Merkel sites, shape (sites, 2), None where they are not wanted."""
 
     def at(self, bone_x: float) -> "View":
         """Return the same with the bone elsewhere (m): in steady full slip the whole finger moves with it."""
-        by, found = np.array([bone_x - self.state.bone_x, 0.0]), dict[str, Any](vars(self))
-        found["state"] = replace(self.state, bone_x=bone_x)
-        for part, array in (("skin", "x"), ("snapshot", "u")):
-            if (each := found[part]) is not None:
-                kept = dict(each if isinstance(each, Mapping) else vars(each))
-                kept[array] = kept[array] + (by[0] if array == "x" else by)
-                found[part] = kept if isinstance(each, Mapping) else type(each)(**kept)
-        return View(**found | {"merkel": None if self.merkel is None else self.merkel + by})
+        by, skin = np.array([bone_x - self.state.bone_x, 0.0]), self.skin
+        if isinstance(skin, Skin):
+            skin = replace(skin, x=skin.x + by[0])
+        elif skin is not None:
+            skin = {**skin, "x": skin["x"] + by[0]}
+        snapshot = None if self.snapshot is None else replace(self.snapshot, u=self.snapshot.u + by)
+        merkel = None if self.merkel is None else self.merkel + by
+        return View(replace(self.state, bone_x=bone_x), self.size, skin, snapshot, merkel)
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,21 +88,17 @@ class Fields:
         Raises:
             ImportError: PyVista is not installed.
         """
-        pyvista = _pyvista()
+        try:
+            import pyvista
+        except ModuleNotFoundError as error:
+            how = "pip install pyvista, or in a clone environment/wheels"
+            raise ImportError(f"to_pyvista needs pyvista, which is not installed; {how}", name="pyvista") from error
         grid = pyvista.UnstructuredGrid({_TRIANGLE: self.triangles}, _in_space(self.points))
-        for data, arrays in ((grid.point_data, self.on_points()), (grid.cell_data, self.on_cells())):
-            for name, values in arrays.items():
-                data[name] = values
-        return grid
-
-    def on_points(self) -> dict[str, NDArray[Any]]:
-        """Return the arrays by vertex that VTK has, each of shape (points, components)."""
-        return {"displacement": _in_space(self.displacement)}
-
-    def on_cells(self) -> dict[str, NDArray[Any]]:
-        """Return the arrays by cell that VTK has, shapes (cells,) and, of tensors row by row, (cells, 9)."""
+        grid.point_data["displacement"] = _in_space(self.displacement)
         tensors = {"stress": self.stress.reshape(-1, 9), "strain": self.strain.reshape(-1, 9)}
-        return {"sed": self.sed, **tensors, "layer": self.layer}
+        for name, values in {"sed": self.sed, **tensors, "layer": self.layer}.items():
+            grid.cell_data[name] = values
+        return grid
 
 
 class StateFields(dict[str, Fields]):
@@ -136,38 +128,25 @@ class StateFields(dict[str, Fields]):
         """
         if not self:
             self.__missing__("")
-        return _pyvista().MultiBlock({name: fields.to_pyvista() for name, fields in self.items()})
-
-
-def _pyvista() -> Any:
-    try:
+        grids = {name: fields.to_pyvista() for name, fields in self.items()}
         import pyvista
-    except ModuleNotFoundError as error:
-        how = "pip install pyvista, or in a clone environment/wheels"
-        raise ImportError(f"to_pyvista needs pyvista, which is not installed; {how}", name="pyvista") from error
-    return pyvista
+
+        return pyvista.MultiBlock(grids)
 
 
-def of_snapshot(shown: "Snapshot") -> Fields:
+def of_snapshot(shown: Snapshot) -> Fields:
     """Return the fields of what a picture shows."""
     count = int(shown.triangles.max(initial=-1)) + 1  # what follows are the middles of lines
-    zero = np.zeros(len(shown.stress))
+    o = np.zeros(len(shown.stress))
     (xx, yy, zz, xy), (e_xx, e_yy, e_xy) = shown.stress.T, shown.strain.T
-    return Fields(
-        shown.x[:count], shown.u[:count], shown.triangles, shown.tag, shown.sed,
-        _tensor([[xx, xy, zero], [xy, yy, zero], [zero, zero, zz]]),
-        _tensor([[e_xx, e_xy, zero], [e_xy, e_yy, zero], [zero, zero, zero]]),
-    )  # fmt: skip
+    stress = np.moveaxis(np.array([[xx, xy, o], [xy, yy, o], [o, o, zz]]), 2, 0)
+    strain = np.moveaxis(np.array([[e_xx, e_xy, o], [e_xy, e_yy, o], [o, o, o]]), 2, 0)
+    return Fields(shown.x[:count], shown.u[:count], shown.triangles, shown.tag, shown.sed, stress, strain)
 
 
 def _in_space(plane: Array) -> Array:
     """Return vectors in the plane with a third component, zero."""
     return np.column_stack([plane, np.zeros(len(plane))])
-
-
-def _tensor(rows: Sequence[Sequence[Array]]) -> Array:
-    """Return tensors by cell, shape (cells, 3, 3), of their components, each of shape (cells,)."""
-    return np.moveaxis(np.array([list(row) for row in rows]), 2, 0)
 
 
 # -- the file ----------------------------------------------------------------------------------------------
@@ -191,7 +170,7 @@ def read(folder: Path) -> dict[str, dict[str, NDArray[Any]]]:
             for path in file:
                 group, _, name = path.rpartition("/")
                 found.setdefault(group, {})[name] = file[path]
-    except (OSError, ValueError, EOFError, TypeError, RuntimeError, MemoryError, zipfile.BadZipFile, zlib.error):
+    except Exception:  # whatever a file that somebody else wrote makes its readers raise
         return {}
     return found
 
@@ -205,17 +184,13 @@ def groups_of(loads: Mapping[str, View], states: Mapping[str, View]) -> Groups:
         arrays |= {} if view.merkel is None else {"merkel": view.merkel}
         arrays |= {} if view.skin is None else {"skin": np.stack([*sorted_along(view.skin, view.state).values()])}
         if (shown := view.snapshot) is not None:
-            known = (k for k, mesh in enumerate(meshes) if all(np.array_equal(*each) for each in _pairs(mesh, shown)))
-            if (number := next(known, len(meshes))) == len(meshes):
+            same = (all(np.array_equal(getattr(mesh, n), getattr(shown, n)) for n in _MESH) for mesh in meshes)
+            if (number := next((k for k, each in enumerate(same) if each), len(meshes))) == len(meshes):
                 meshes.append(shown)
             arrays |= {"mesh": number, "u": shown.u, "sed": shown.sed}
             arrays |= {name: np.asarray(getattr(shown, name), np.float32) for name in _TENSORS}
         found[group] = arrays
     return {f"meshes/{k}": {name: getattr(mesh, name) for name in _MESH} for k, mesh in enumerate(meshes)} | found
-
-
-def _pairs(one: Any, other: Any) -> list[tuple[NDArray[Any], NDArray[Any]]]:
-    return [(getattr(one, name), getattr(other, name)) for name in _MESH]
 
 
 def views_of(
@@ -228,55 +203,55 @@ def views_of(
         steps: its accepted states.
         named: its named states.
     """
-    groups, ends = read(folder), {load: mine[-1] for load, mine in by_load(steps)}
-    loads = {load: _view(groups, f"loads/{load}", end) for load, end in ends.items()}
-    of_path = {**named, **shown(steps)}
-    states = {name: _view(groups, f"states/{name}", state) for name, state in of_path.items()}
+    groups = read(folder)
+
+    def views(kind: str, of: Mapping[str, ContactState]) -> dict[str, View]:
+        found = {name: _view(groups, f"{kind}/{name}", state) for name, state in of.items()}
+        return {name: view for name, view in found.items() if view is not None}
+
+    states = views("states", {**named, **shown(steps)})
     for name, view in states.items():
-        if view is not None and view.snapshot is not None and name in named:  # on another mesh than the path's
+        if view.snapshot is not None and name in named:  # on another mesh than the path's
             there = replace(named[name], bone_x=view.state.bone_x)
             states[name] = replace(view, state=there, size=there.mesh_contact)
-    return tuple({name: view for name, view in each.items() if view} for each in (loads, states))  # type: ignore[return-value]
+    return views("loads", {load: mine[-1] for load, mine in by_load(steps)}), states
 
 
 def _view(groups: Groups, group: str, state: ContactState) -> View | None:
     """Return the view of a group; None without one, or where its arrays are not whole."""
     arrays = groups.get(group, {})
     try:
-        skin, number = arrays.get("skin"), arrays.get("mesh")
-        snapshot: Any = None
-        if number is not None:
-            mesh = groups[f"meshes/{int(number)}"]
+        there, snapshot, along = replace(state, bone_x=float(arrays["bone_x"])), None, None
+        if "mesh" in arrays:
+            mesh = groups[f"meshes/{int(arrays['mesh'])}"]
             tensors = {name: arrays[name].astype(float) for name in _TENSORS}
-            snapshot = SimpleNamespace(
-                **{name: mesh[name] for name in _MESH}, u=arrays["u"], sed=arrays["sed"], **tensors
-            )
-            if not _whole(snapshot):
+            snapshot = Snapshot(u=arrays["u"], sed=arrays["sed"], **{name: mesh[name] for name in _MESH}, **tensors)
+            if not _fits(snapshot):
                 return None
-        if skin is not None and (skin.ndim != 2 or len(skin) != len(ALONG) or skin.dtype.kind != "f"):
-            return None
-        there = replace(state, bone_x=float(arrays["bone_x"]))
+        if (skin := arrays.get("skin")) is not None:
+            if skin.ndim != 2 or skin.dtype.kind != "f":
+                return None
+            along = dict(zip(ALONG, skin, strict=True))
     except (KeyError, TypeError, ValueError):
         return None
-    along = None if skin is None else dict(zip(ALONG, skin, strict=True))
     return View(there, None, along, snapshot, arrays.get("merkel"))
 
 
-def _whole(shown: Any) -> bool:
-    """Return whether the arrays of a snapshot fit together, whoever wrote them."""
-    points, cells = len(shown.x), len(shown.triangles)
+def _fits(shown: Snapshot) -> bool:
+    """Return whether the arrays of a snapshot fit together, whoever wrote them.
+
+    Raises:
+        TypeError: one is of no numbers.
+    """
+    points, cells, lines = len(shown.x), len(shown.triangles), len(shown.lines)
     shapes = {"x": (points, 2), "u": (points, 2), "triangles": (cells, 3), "tag": (cells,), "sed": (cells,)}
-    shapes |= {"stress": (cells, 4), "strain": (cells, 3), "lines": (len(shown.lines), 3)}
-    shapes |= {"beside": (len(shown.lines), 2)}
-    if any(getattr(shown, name).shape != shape for name, shape in shapes.items()):
-        return False
-    if not all(getattr(shown, name).dtype.kind == "f" for name in ("x", "u", "sed")):
-        return False
-    for name, least, most in (("triangles", 0, points), ("lines", 0, points), ("beside", -1, cells)):
-        values = getattr(shown, name)
-        if values.dtype.kind != "i" or np.any((values < least) | (values >= most)):
-            return False
-    return bool(np.isfinite(shown.x).all() and np.isfinite(shown.u).all() and np.isfinite(shown.sed).all())
+    shapes |= {"stress": (cells, 4), "strain": (cells, 3), "lines": (lines, 3), "beside": (lines, 2)}
+    numbers = ((shown.triangles, 0, points), (shown.lines, 0, points), (shown.beside, -1, cells))
+    return (
+        all(getattr(shown, name).shape == shape for name, shape in shapes.items())
+        and all(np.isfinite(each).all() for each in (shown.x, shown.u, shown.sed))
+        and all(each.dtype.kind == "i" and ((each >= low) & (each < high)).all() for each, low, high in numbers)
+    )
 
 
 def sorted_along(skin: Along, state: ContactState) -> dict[str, Any]:

@@ -23,9 +23,8 @@ from variational.files import read
 FORMAT = 2
 """Number of the format of ``summary.json`` and ``sweep.json``; one more where older files are read otherwise."""
 _MAX_BYTES = 200_000_000  # of a file that is read; a summary of a thousand loads has two millions
-_FILES = 160  # bytes that the longest name of a file in a folder of results takes of a path
 _PATH = 80  # characters of a path in a sentence
-_MAX_NAME, _MAX_PATH = 255, 4096  # bytes, of Linux's file systems
+_MAX_NAME, _MAX_PATH, _FILES = 255, 4096, 160  # bytes of a name and a path in Linux, and of it for a file of results
 _MAX_DEPTH = 50  # of what it holds, which has some ten
 
 
@@ -74,15 +73,7 @@ def has_other_format(kept: Mapping[str, Any]) -> bool:
 
 
 def refuse_other_format(kept: Mapping[str, Any], name: str) -> None:
-    """Refuse a summary of another format.
-
-    Args:
-        kept: content of the file.
-        name: of its folder.
-
-    Raises:
-        SceneError: it has another format, or none.
-    """
+    """Raise :class:`SceneError` where a summary, that of the folder of this name, has another format, or none."""
     if has_other_format(kept):
         raise SceneError(
             f"{name} has the format {clip(str(kept.get('format')), 16)} of another version; this fingerpad reads "
@@ -157,15 +148,7 @@ class Table:
 
 
 def check_folder(folder: Path, option: str = "--out") -> None:
-    """Refuse a folder that cannot be made or written to; nothing is made.
-
-    Args:
-        folder: to be made or written to.
-        option: what it was given by.
-
-    Raises:
-        SceneError: why not.
-    """
+    """Raise :class:`SceneError` where a folder of an option cannot be made or written to; nothing is made."""
     name, absolute = f"{option} {clip(str(folder), _PATH)}", Path(os.path.abspath(folder))
     try:
         str(folder).encode("utf-8")

@@ -89,20 +89,9 @@ class Folder:
     """
 
     def __init__(
-        self,
-        folder: Path,
-        parameters: Mapping[str, Any],
-        comm: "MPI.Comm | Serial",
-        model: str = DEFAULT_MODEL,
+        self, folder: Path, parameters: Mapping[str, Any], comm: "MPI.Comm | Serial", model: str = DEFAULT_MODEL
     ) -> None:
-        """Choose a folder; nothing is touched before :meth:`take`, except that the folder is made.
-
-        Args:
-            folder: of the results.
-            parameters: of the scene that they are of.
-            comm: communicator of the run.
-            model: whose results they are, see :data:`fingerpad.reduced.registry.MODELS`.
-        """
+        """Choose a folder for results of a scene; nothing is touched before :meth:`take`, but the folder is made."""
         self.folder, self._comm = folder, comm
         self._parameters = json.loads(json.dumps(parameters))  # as they are read back
         if model != DEFAULT_MODEL:
@@ -116,18 +105,14 @@ class Folder:
         Raises:
             FolderError: another run is at it, it holds another scene's results, or cannot be written to.
         """
-        refusal = ""
-        if self._comm.rank == 0:
-            try:
-                self._open()
-            except FolderError as error:
-                refusal = str(error)
-            except OSError as error:
-                refusal = f"results cannot be written to {ends(self.folder)}: {error.strerror}; choose another folder"
-        refusal = self._comm.bcast(refusal)
-        if refusal:
+        try:
+            on_rank_0(self._comm, self._open)
+        except (OSError, FolderError) as error:
             self.__exit__()
-            raise FolderError(refusal)
+            if isinstance(error, FolderError):
+                raise
+            words = f"results cannot be written to {ends(self.folder)}: {error.strerror}; choose another folder"
+            raise FolderError(words) from None
         return self
 
     def __exit__(self, *error: object) -> None:

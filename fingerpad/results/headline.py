@@ -109,10 +109,8 @@ def _of_result(result: ResultData) -> Headline:
     slip, finger = result.full_slip if result.scene.friction != 0 else None, result.finger
     if (load := _timed(result)) is not None:
         return _over_time(load, slip)
-    if finger is not None and (slip is None or "full_slip" in finger.states):
-        found = _of_finger(result, finger)
-    else:
-        found = _of_contact(result) if slip is None else _of_slip(result, slip)
+    whole = finger is not None and (slip is None or "full_slip" in finger.states)
+    found = _of_states(result, finger if whole else None, slip)
     if slip is not None and (why := why_not_known(result.record.get(KNOWN, {}))):
         sentence = f"Friction {found.at}, is not known: {why}."
         return Headline(sentence, found.of, found.quantity, math.nan, found.at)
@@ -120,58 +118,48 @@ def _of_result(result: ResultData) -> Headline:
 
 
 # -- what a number is of ---------------------------------------------------------------------------------------
-def _of_number(result: ResultData, whole: bool, state: str, key: str, sentence: str, at: str) -> Headline:
-    """Return the headline of a quantity of a named state; with its likely range where that is of the same finger."""
-    value, error, parts = result.number(state, key, whole)
-    of, quantity = (WHOLE, FINGER[key]) if whole else (SECTION, QUANTITIES[key])
-    kept = result.record.get(KNOWN, {})
-    known = known_in_words(kept) if state == "full_slip" and kept and kept["whole"] == whole else ""
-    return Headline(sentence, of, quantity, value, at, error, parts, known=known)
+def _of_states(result: ResultData, finger: "WholeFinger | None", slip: ContactState | None) -> Headline:
+    """Return friction at full slip, else the size of the contact in the last named state.
 
-
-def _of_finger(result: ResultData, finger: "WholeFinger") -> Headline:
-    """Return the friction coefficient of the whole finger; its ridge contact area without full slip."""
-    volts = result.scene.volts
-    force = f"{finger.f_ext:.4g} N" if result.whole else f"{finger.f_ext * (1 + _ROUNDOFF):.2g} N"
-    if "full_slip" in finger.states:
-        before, after = _without(result, finger.f_ext), abs(finger.values("full_slip")["f_t"])
-        sentence = _change(result, force, volts, "friction force", before, after, "N")
-        at = f"at full slip, {finger.f_ext:.4g} N and {volts:.4g} V"
-        return _of_number(result, True, "full_slip", "mu_app", sentence, at)
-    name, scale = list(finger.states)[-1], FINGER["contact_area"].scale
-    section, attraction = result.named.get(name), finger.states[name].totals["f_electrostatic"]
-    if section is not None and not (section.voltage or attraction):
-        volts = 0.0  # a run can end before its voltage
-    attracts = volts and "uncharged" in finger.states and name == "charged"
-    before = scale * finger.values("uncharged")["contact_area"] if attracts else None
-    after = scale * finger.values(name)["contact_area"]
-    sentence = _change(result, force, volts, "ridge contact area", before, after, "mm²")
-    at = f"in {called(name, attraction)}, {finger.f_ext:.4g} N and {volts:.4g} V"
-    sentence = _stuck(result, f"{force} and {volts:.4g} V") or sentence
-    return _of_number(result, True, name, "contact_area", sentence, at)
-
-
-def _of_slip(result: ResultData, slip: ContactState) -> Headline:
-    """Return the friction coefficient of the middle section; its friction force where no force presses it."""
-    force, what = f"{slip.f_ext:.4g} N/m", f"friction force of the {SECTION}"
-    before = _without(result, slip.f_ext) if slip.f_ext > 0 else None
-    sentence = _change(result, force, slip.voltage, what, before, abs(slip.f_t), "N/m")
-    at = f"at full slip, {force} and {slip.voltage:.4g} V"
-    return _of_number(result, False, "full_slip", "f_t" if math.isnan(slip.mu_app) else "mu_app", sentence, at)
-
-
-def _of_contact(result: ResultData) -> Headline:
-    """Return the contact length of the middle section in normal contact."""
-    if not result.named:
+    Args:
+        result: of a scene.
+        finger: the whole finger; None for the headline of the middle section.
+        slip: full slip, where there is friction; None without.
+    """
+    whole, names = finger is not None, list(result.named if finger is None else finger.states)
+    if not names:
         return Headline("No contact state was kept.", SECTION, QUANTITIES["contact_length"], math.nan)
-    (name, state), scale = list(result.named.items())[-1], QUANTITIES["contact_length"].scale
-    attracts = state.voltage and result.uncharged is not None and name == "charged"
-    before = scale * result.uncharged.contact_length if attracts and result.uncharged else None
-    under, what = (f"{state.f_ext:.4g} N/m", state.voltage), f"contact length of the {SECTION}"
-    sentence = _change(result, *under, what, before, scale * state.contact_length, "mm")
-    load = f"{under[0]} and {state.voltage:.4g} V"
-    at = f"in {called(name, state.voltage)}, {load}"
-    return _of_number(result, False, name, "contact_length", _stuck(result, load) or sentence, at)
+    of, quantities, unit = (WHOLE, FINGER, "N") if whole else (SECTION, QUANTITIES, "N/m")
+    slips = "full_slip" in names if whole else slip is not None
+    name = "full_slip" if slips else names[-1]
+
+    def value(key: str, state: str = name) -> float:
+        return float(getattr(result.named[state], key) if finger is None else finger.values(state)[key])
+
+    f_ext, what = value("f_ext") if finger is None else finger.f_ext, "" if whole else f" of the {SECTION}"
+    volts, charge = (value("voltage"),) * 2 if finger is None else (result.scene.volts, value("f_electrostatic"))
+    load = force = f"{f_ext:.4g} {unit}"
+    if whole and not result.whole:
+        force = f"{f_ext * (1 + _ROUNDOFF):.2g} {unit}"
+    if slips:
+        key = "f_t" if math.isnan(value("mu_app")) else "mu_app"
+        before, after = _without(result, f_ext), abs(value("f_t"))
+        sentence, at = _change(result, force, volts, f"friction force{what}", before, after, unit), "at full slip"
+    else:
+        section, key = result.named.get(name), "contact_area" if whole else "contact_length"
+        if whole and section is not None and not (section.voltage or charge):
+            volts = 0.0  # a run can end before its voltage
+        scale, attracts = quantities[key].scale, volts and name == "charged" and "uncharged" in names
+        before, after = scale * value(key, "uncharged") if attracts else None, scale * value(key)
+        size = "ridge contact area" if whole else f"contact length{what}"
+        sentence = _stuck(result, f"{force} and {volts:.4g} V") or _change(
+            result, force, volts, size, before, after, quantities[key].unit
+        )
+        at = f"in {called(name, charge)}"
+    number, error, parts = result.number(name, key, whole)
+    kept, at = result.record.get(KNOWN, {}), f"{at}, {load} and {volts:.4g} V"
+    known = known_in_words(kept) if name == "full_slip" and kept and kept["whole"] == whole else ""
+    return Headline(sentence, of, quantities[key], number, at, error, parts, known=known)
 
 
 def _over_time(load: LoadResult, slip: ContactState | None) -> Headline:
@@ -201,23 +189,13 @@ def _timed(result: ResultData) -> LoadResult | None:
 def _without(result: ResultData, force: float) -> float | None:
     """Return the friction force without attraction under a force, in its unit; None where it is not known."""
     mu_0 = result.scene.friction
-    return mu_0 * force if isinstance(mu_0, float) else None
+    return mu_0 * force if isinstance(mu_0, float) and force > 0 else None
 
 
 def _change(
     result: ResultData, force: str, volts: float, what: str, before: float | None, after: float, unit: str
 ) -> str:
-    """Return a sentence on what a voltage changes.
-
-    Args:
-        result: of the scene.
-        force: on the finger, with its unit.
-        volts: the voltage (V).
-        what: is changed.
-        before: its value without the voltage; None where it is not known.
-        after: its value.
-        unit: of both.
-    """
+    """Return a sentence on what a voltage (V) changes; ``before`` is None where it is not known without the voltage."""
     drive = result.scene.drive is not None
     if before is None or not volts:
         under = "under the drive" if drive else f"and {volts:.4g} V"

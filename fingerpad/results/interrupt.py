@@ -83,11 +83,7 @@ class Interrupt:
             signal.signal(number, handler)
 
     def stop_if_asked(self, step: int = 0, kept: str = "") -> None:
-        """Stop after an accepted step; collective.
-
-        Args:
-            step: its number.
-            kept: what is kept of the run, and how it goes on, in words.
+        """Stop after an accepted step, of which words tell what is kept and how the run goes on; collective.
 
         Raises:
             Interrupted: a signal came.
@@ -111,20 +107,12 @@ class DiskFull(OSError):
 
 
 def no_room(error: BaseException, resumes: bool) -> DiskFull | None:
-    """Return the error of a run where a full disk, a quota or a limit of files' sizes is the reason, or None.
-
-    Args:
-        error: of the run.
-        resumes: whether there is a checkpoint to go on from.
-    """
-    if isinstance(error, OSError) and error.errno in _FULL:
-        how = "fingerpad run --resume FOLDER goes on" if resumes else "the same command starts again"
-        return DiskFull(
-            error.errno,
-            f"{error.strerror}: no more results can be written; what was written before stays as it is, and {how} when "
-            "there is room",
-        )
-    return None
+    """Return the error of a run where a full disk, a quota or a limit of files' sizes is the reason, or None."""
+    if not (isinstance(error, OSError) and error.errno in _FULL):
+        return None
+    how = "fingerpad run --resume FOLDER goes on" if resumes else "the same command starts again"
+    words = "no more results can be written; what was written before stays as it is, and"
+    return DiskFull(error.errno, f"{error.strerror}: {words} {how} when there is room")
 
 
 def all_together(comm: MPI.Comm) -> None:

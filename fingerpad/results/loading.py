@@ -10,24 +10,28 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fingerpad.results import quantities
-from fingerpad.results.dataset import CHANGED, FILE, OF_RIDGES
+from fingerpad.results.data import Cost
+from fingerpad.results.dataset import BY_RIDGE, CHANGED, FILE
 from fingerpad.results.files import FORMAT, read_object
-from fingerpad.results.quantities import RIDGES, SKIN, STEPS, STIMULI, Output
-from fingerpad.results.states import STATES, LoadResult, load_results
+from fingerpad.results.quantities import CHANGES, SKIN, STABILITY, STEPS, Output
+from fingerpad.results.states import STATES, load_results
 from fingerpad.scene.law_code import foreign
 from fingerpad.scene.messages import SceneError, clip
 from fingerpad.scene.parameters import Slices
 from fingerpad.scene.reading import model_name
 from fingerpad.scene.remarks import coefficient
-from fingerpad.scene.scene import Scene, as_kept
+from fingerpad.scene.scene import as_kept
+from variational.caution import Caution
 from variational.files import read as read_bytes
-from variational.state import PATH, ContactState, Errors, RidgeStates, Sites, Skin, StepRecord, Stimuli
+from variational.state import PATH, ContactState, Errors, Skin, StepRecord
 
 if TYPE_CHECKING:
     import xarray
 
     from fingerpad.slices.finger import WholeFinger
+
+Arrays = Mapping[str, NDArray[Any]]
+"""Values of a dataset by variable."""
 
 
 def read(folder: Path) -> "xarray.Dataset":
@@ -60,61 +64,48 @@ def _without_result(folder: Path) -> str:
         return f"{name} is not a folder of a finished run"
 
 
-def parts(data: "xarray.Dataset", cost: type) -> dict[str, Any]:
+def parts(data: "xarray.Dataset") -> dict[str, Any]:
     """Return the fields of the result of a dataset, but for its folder.
-
-    Args:
-        data: the dataset.
-        cost: the class of its costs.
 
     Raises:
         SceneError: it is not of a result, or its parameters are no valid scene.
     """
-    about = data.attrs
+    about, arrays = data.attrs, {str(name): variable.values for name, variable in data.variables.items()}
     try:
+        for prefix in ("", "state_"):
+            if (sed := arrays.pop(f"{prefix}meissner_sed", None)) is not None:
+                arrays |= {f"{prefix}meissner_left": sed[..., 0], f"{prefix}meissner_right": sed[..., 1]}
         parameters, record = json.loads(about["parameters"]), json.loads(about.get("record", "{}"))
         outputs = tuple(Output(**each) for each in json.loads(about.get("outputs", "[]")))
-        scene = as_kept(parameters)
+        scene, own = as_kept(parameters), [each.name for each in outputs]
         if "laws" in parameters:  # objects of Python, of which only the names are kept
             record["parameters"] = parameters
-        steps, named = _states(data, [each.name for each in outputs])
-        stable = [None if k < 0 else bool(k) for k in data["load_stable"].values] if steps else []
-        found = {name: named.get(name) for name in STATES} | {"scene": scene, "model": model_name(about["model"])}
+        steps = tuple(_state(arrays, "", k, own) for k in range(len(arrays.get("step", ()))))
+        there = {name: k for k, name in enumerate(STATES) if arrays["state_step"][k] >= 0}
+        found = {name: _named_state(arrays, there[name], own) if name in there else None for name in STATES}
+        stable = dict(zip(arrays["load_last_step"], arrays["load_stable"], strict=True)) if steps else {}
+        loads = load_results(
+            steps, scene.loads(), lambda end: {0: False, 1: True}.get(stable.get(end.step, -1)), coefficient(scene)
+        )
+        found |= {"steps": steps, "loads": loads, "scene": scene, "record": record, "outputs": outputs}
         found |= {name: about.get(name, "") for name in ("failure", "interrupted")}
-        found |= {name: tuple(filter(None, about.get(name, "").split("\n"))) for name in ("notes", "cautions")}
-        found["cost"] = cost(**{each.name: _plain(about[each.name]) for each in fields(cost)})
-        found |= {"steps": steps, "loads": loads_of(scene, steps, stable), "record": record, "outputs": outputs}
-        return found | {"finger": _finger(data, outputs, scene.slices)}
+        found |= {"notes": _lines(about, "notes"), "cautions": _cautions(about)}
+        found |= {"cost": Cost(**{each.name: _plain(about[each.name]) for each in fields(Cost)})}
+        kept = json.loads(about["finger"]) if "finger" in about else None
+        finger = None if kept is None else _finger(arrays, kept, outputs, scene.slices)
+        return found | {"model": model_name(about["model"]), "finger": finger}
     except (KeyError, ValueError, TypeError, IndexError, AttributeError) as error:  # a SceneError is a ValueError
         if isinstance(error, SceneError):
             raise
         raise SceneError(f"its dataset is not of a run ({type(error).__name__}: {error})") from None
 
 
-def loads_of(scene: Scene, steps: Sequence[ContactState], stable: Sequence[bool | None]) -> tuple[LoadResult, ...]:
-    """Return the result of each load, with the stability of its end as far as that is known."""
-    known = (*stable, *[None] * (len(scene.loads()) + 1))
-    return tuple(load_results(steps, scene.loads(), lambda k, end: known[k], coefficient(scene)))
-
-
-def _states(data: "xarray.Dataset", own: Sequence[str]) -> tuple[tuple[ContactState, ...], dict[str, ContactState]]:
-    """Return the steps and the named states of a dataset.
+def _finger(arrays: Arrays, kept: Mapping[str, Any], outputs: Sequence[Output], shape: Slices) -> "WholeFinger":
+    """Return the whole finger of a dataset.
 
     Args:
-        data: of a result.
-        own: names of outputs that are computed from a state.
-    """
-    arrays = {str(name): variable.values for name, variable in data.variables.items()}
-    steps = tuple(_state(arrays, "", k, own) for k in range(len(arrays.get("step", ()))))
-    there = [(k, name) for k, name in enumerate(STATES) if arrays["state_step"][k] >= 0]
-    return steps, {name: _named_state(arrays, k, own) for k, name in there}
-
-
-def _finger(data: "xarray.Dataset", outputs: Sequence[Output], shape: Slices) -> "WholeFinger | None":
-    """Return the whole finger of a dataset; None without one.
-
-    Args:
-        data: of a result.
+        arrays: values by variable.
+        kept: what has no variable, its source and the errors of its section.
         outputs: that are computed from a state.
         shape: the finger along its axis.
     """
@@ -122,28 +113,26 @@ def _finger(data: "xarray.Dataset", outputs: Sequence[Output], shape: Slices) ->
     from fingerpad.slices.total import Total
     from fingerpad.slices.trace import Trace
 
-    if "finger" not in data.attrs:
-        return None
-    totals, traces, kept = {}, {}, json.loads(data.attrs["finger"])
-    arrays = {str(name): variable.values for name, variable in data.variables.items()}
+    def columns(prefix: str, k: int) -> dict[str, NDArray[Any]]:
+        rows = {key.removeprefix(prefix): _filled(each[k]) for key, each in arrays.items() if key.startswith(prefix)}
+        return {key: row for key, row in rows.items() if len(row)}
+
+    totals, traces = {}, {}
     for k, name in enumerate(STATES):
         if np.isnan(arrays["finger_centre"][k]):
             continue
-        slices = {key.removeprefix("slice_"): _filled(each[k]) for key, each in arrays.items() if key[:6] == "slice_"}
-        slices = {key: each for key, each in slices.items() if len(each) and key != "pressure"}
+        slices = columns("slice_", k)
+        slices.pop("pressure", None)
         places = slices.pop("z"), slices.pop("thickness"), slices.pop("indentation")
         totals[name] = Total(arrays["finger_indentation"][k], *places, arrays["finger_centre"][k], slices)
-        columns = {key.removeprefix("trace_"): _filled(each[k]) for key, each in arrays.items() if key[:6] == "trace_"}
-        columns = {key: each for key, each in columns.items() if len(each)}
-        if columns:
-            ridges = columns.pop("ridges", None)
-            depth = columns.pop("depth")
-            own = tuple(each for each in outputs if each.name in columns)
-            traces[name] = Trace(depth, columns, None if ridges is None else ridges.astype(int), own)
+        if trace := columns("trace_", k):
+            ridges, depth = trace.pop("ridges", None), trace.pop("depth")
+            own = tuple(each for each in outputs if each.name in trace)
+            traces[name] = Trace(depth, trace, None if ridges is None else ridges.astype(int), own)
     return WholeFinger(totals, kept["source"], kept["carried"], traces, shape)
 
 
-def _state(arrays: Mapping[str, NDArray[Any]], prefix: str, k: int, own: Sequence[str]) -> ContactState:
+def _state(arrays: Arrays, prefix: str, k: int, own: Sequence[str]) -> ContactState:
     """Return the state at a place of the dimension whose variables begin with a prefix.
 
     Args:
@@ -157,30 +146,24 @@ def _state(arrays: Mapping[str, NDArray[Any]], prefix: str, k: int, own: Sequenc
     record = {each.name: row.pop(each.name) for each in fields(StepRecord) if each.name in row}
     more: dict[str, Any] = {"own": {name: row.pop(name) for name in own if name in row}}
     more |= {"record": StepRecord(**record)} if record else {}
-    number = arrays.get("ridge", np.arange(0))
-    if f"{prefix}ridge_contact_length" in arrays:
-        columns = {OF_RIDGES[name]: arrays[f"{prefix}ridge_{name}"][k] for name in RIDGES}
-        there = np.isfinite(columns["length"])
-        values = {name: column[there] for name, column in columns.items()}
-        more["ridges"] = RidgeStates(number[there].astype(int), **values | {"note": tuple(map(str, values["note"]))})
-    if f"{prefix}merkel_sed" in arrays and (there := np.isfinite(arrays[f"{prefix}merkel_sed"][k])).any():
-        left, right = arrays[f"{prefix}meissner_sed"][k][there].T
-        more["sites"] = Sites(number[there].astype(int), arrays[f"{prefix}merkel_sed"][k][there], left, right)
-    if f"{prefix}merkel_stress" in arrays:
-        there = np.isfinite(arrays[f"{prefix}merkel_stress"][k])
-        values = {name: arrays[f"{prefix}{name}"][k][there] for name in STIMULI}
-        more["stimuli"] = Stimuli(number[there].astype(int), **values) if there.any() else None
+    for group, (kind, start, attributes) in BY_RIDGE.items():
+        columns = {attributes[name]: arrays.get(prefix + start + name) for name in attributes}
+        first = next(iter(columns.values()))
+        if first is not None and (there := np.isfinite(first[k])).any():
+            values = {attribute: column[k][there] for attribute, column in columns.items()}  # type: ignore[index]
+            values |= {"note": tuple(map(str, values["note"]))} if "note" in values else {}
+            more[group] = kind(arrays["ridge"][there].astype(int), **values)
     if not prefix and "coupling_change" in arrays:
         more["changes"] = tuple(map(float, arrays["coupling_change"][k][np.isfinite(arrays["coupling_change"][k])]))
     return ContactState(**row, **more)
 
 
-def _named_state(arrays: Mapping[str, NDArray[Any]], k: int, own: Sequence[str]) -> ContactState:
+def _named_state(arrays: Arrays, k: int, own: Sequence[str]) -> ContactState:
     """Return a named state by its place, with its stability, errors and skin."""
-    stable, least, gain = (arrays[f"state_{name}"][k] for name in quantities.STABILITY)
+    stable, least, gain = (arrays[f"state_{name}"][k] for name in STABILITY)
     more: dict[str, Any] = {"stable": None if stable < 0 else bool(stable)}
     more |= {name: None if np.isnan(value) else float(value) for name, value in (("lambda_min", least), ("gain", gain))}
-    for kind in quantities.CHANGES:
+    for kind in CHANGES:
         names = {key: f"state_{key}_{kind}" for key in (*CHANGED, *own)}
         more[kind] = Errors.of({key: float(arrays[name][k]) for key, name in names.items() if name in arrays})
     if "skin_ridge" in arrays and (facets := np.isfinite(arrays["skin_ridge"][k])).any():
@@ -188,6 +171,15 @@ def _named_state(arrays: Mapping[str, NDArray[Any]], k: int, own: Sequence[str])
         values = {name: arrays[f"skin_{name}"][k][facets][:, points] for name in SKIN}
         more["skin"] = Skin(ridge=arrays["skin_ridge"][k][facets].astype(int), **values)
     return replace(_state(arrays, "state_", k, own), reached=str(arrays["state_reached"][k]) or PATH, **more)
+
+
+def _lines(about: Mapping[str, Any], name: str) -> tuple[str, ...]:
+    return tuple(filter(None, about.get(name, "").split("\n")))
+
+
+def _cautions(about: Mapping[str, Any]) -> tuple[Caution, ...]:
+    numbers = (None if np.isnan(each) else float(each) for each in np.atleast_1d(about.get("caution_numbers", ())))
+    return tuple(map(Caution, _lines(about, "caution_codes"), _lines(about, "cautions"), numbers))
 
 
 def _plain(value: Any) -> Any:

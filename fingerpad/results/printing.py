@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from fingerpad import notebook
 from fingerpad.results.data import ResultData
 from fingerpad.results.headline import band_in_words
-from fingerpad.results.quantities import BAND, FRICTION, PER_LENGTH, QUANTITIES, cell, plus_minus_of
+from fingerpad.results.quantities import BAND, FRICTION, PER_LENGTH, QUANTITIES, plus_minus_of
 from fingerpad.results.states import LoadResult, called
 from fingerpad.scene.reading import DEFAULT_MODEL
 from variational.state import ContactState
@@ -98,11 +98,11 @@ def _in_time(load: LoadResult, least: float) -> str:
     key = "contact_length" if not rubs else "mu_app" if "mu_app" in load.extremes else "f_t"
     quantity, ends, mean = QUANTITIES[key], load.extremes[key], passed.mean[key]
     unit = f" {quantity.unit}" if quantity.unit else ""
-    words = f"{load.name}: {quantity.words.split()[-1]} {cell(key, ends.min)} to {cell(key, ends.max)}{unit}"
-    words += "" if math.isnan(mean) else f", mean {cell(key, mean)}{unit}"
+    words = f"{load.name}: {quantity.words.split()[-1]} {quantity.shown(ends.min)} to {quantity.shown(ends.max)}{unit}"
+    words += "" if math.isnan(mean) else f", mean {quantity.shown(mean)}{unit}"
     if rubs and passed.periods:
         most, frequency = max(zip(passed.f_t_amplitude, passed.frequency, strict=True))
-        words += f"; amplitude of f_T at {frequency:.4g} Hz {cell('f_t', most)} N/m"
+        words += f"; amplitude of f_T at {frequency:.4g} Hz {QUANTITIES['f_t'].shown(most)} N/m"
     return f"{words}; {load.sticking}" if rubs and load.sticking else words
 
 

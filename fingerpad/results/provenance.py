@@ -5,6 +5,7 @@ An option that PETSc refuses is found before a run, and one that it does not rea
 
 import contextlib
 import ctypes
+import json
 import os
 import platform
 import re
@@ -37,43 +38,36 @@ _LIBRARIES = re.compile(r"lib(openblas|blas|cblas|lapack|mkl|blis|d?mumps|scotch
 
 def provenance() -> dict[str, Any]:
     """Return versions, PETSc's options, compiler's options, the environment and the processor, ready for JSON."""
-    libraries = sorted(_loaded())
+    libraries = _loaded()
+    model = re.search(r"^model name\s*: (.*)$", _system("/proc/cpuinfo"), re.MULTILINE)
     mumps = (re.search(r"dmumps\D*(\d[\d.]*\d)", file.name) for file in libraries)
     return {
         "versions": _versions() | {"mumps": next((found[1] for found in mumps if found), None)},
         "libraries": [file.name for file in libraries],
         "blas": _openblas(libraries),
         "petsc_options": _in_use(),
-        "jit_options": {name: _plain(value) for name, value in jit.options().items()},
-        "ffcx_options": {name: _plain(value) for name, value in ffcx.options.get_options().items()},
+        "jit_options": json.loads(json.dumps(dolfinx.jit.get_options(jit.OPTIONS), default=str)),
+        "ffcx_options": json.loads(json.dumps(ffcx.options.get_options(), default=str)),
         "environment": {name: value for name, value in sorted(os.environ.items()) if _VARIABLES.fullmatch(name)},
-        "processor": _processor(),
+        "processor": model[1] if model else platform.processor() or platform.machine(),
         "system": platform.platform(),
     }
 
 
 def _versions() -> dict[str, str]:
-    return {
-        "fingerpad": version(),
-        "source": source(),
-        "dolfinx": dolfinx.__version__,
-        "basix": basix.__version__,
-        "ffcx": ffcx.__version__,
-        "ufl": ufl.__version__,
-        "petsc": ".".join(map(str, PETSc.Sys.getVersion())),
-        "gmsh": gmsh.__version__,
-        "numpy": np.__version__,
-        "scipy": scipy.__version__,
-        "python": platform.python_version(),
-    }
+    found = {"fingerpad": version(), "source": source(), "petsc": ".".join(map(str, PETSc.Sys.getVersion()))}
+    found |= {each.__name__: each.__version__ for each in (dolfinx, basix, ffcx, ufl, gmsh, np, scipy)}
+    return found | {"python": platform.python_version()}
 
 
-def _loaded() -> set[Path]:
+def _loaded() -> list[Path]:
     """Return the files of the linear algebra's libraries in this process; none where there is no /proc."""
-    with contextlib.suppress(OSError):
-        files = {Path(line.split()[-1]) for line in Path("/proc/self/maps").read_text().splitlines() if "/" in line}
-        return {file.resolve() for file in files if _LIBRARIES.fullmatch(file.name)}
-    return set()
+    files = {Path(line.split()[-1]) for line in _system("/proc/self/maps").splitlines() if "/" in line}
+    return sorted({file.resolve() for file in files if _LIBRARIES.fullmatch(file.name)})
+
+
+def _system(file: str) -> str:
+    return Path(file).read_text() if Path(file).exists() else ""
 
 
 def _openblas(libraries: list[Path]) -> str | None:
@@ -84,18 +78,6 @@ def _openblas(libraries: list[Path]) -> str | None:
             say.restype = ctypes.c_char_p
             return str(say().decode())
     return None
-
-
-def _processor() -> str:
-    with contextlib.suppress(OSError):
-        found = re.search(r"^model name\s*: (.*)$", Path("/proc/cpuinfo").read_text(), re.MULTILINE)
-        if found:
-            return found[1]
-    return platform.processor() or platform.machine()
-
-
-def _plain(value: Any) -> Any:
-    return value if value is None or isinstance(value, bool | int | float | str | list) else str(value)
 
 
 class OptionError(SceneError):
@@ -111,9 +93,7 @@ def _in_use() -> dict[str, str]:
 def check_options(comm: MPI.Comm = MPI.COMM_SELF, element: str = "P2") -> None:
     """Have PETSc set up its solver with the options, on two equations a rank; collective.
 
-    Args:
-        comm: communicator of the run.
-        element: of the run, on which the kind of its matrix depends; no package factorises every kind.
+    The kind of the matrix depends on the element of the run, and no package factorises every kind.
 
     Raises:
         OptionError: PETSc refuses a value, or has no such package.
@@ -158,11 +138,8 @@ def refuse_unread() -> None:
 def _refusal(error: PETSc.Error) -> str:
     """Return the last line of PETSc's message, and the options whose values it names."""
     words = str(error).splitlines()[-1].split("] ", 1)[-1].strip()
-    options = {
-        option: value
-        for option, value in _in_use().items()
-        if option.startswith(f"-{PREFIX}") and DEFAULTS.get(option.removeprefix(f"-{PREFIX}")) != value
-    }
+    own = {o: v for o, v in _in_use().items() if o.startswith(f"-{PREFIX}")}
+    options = {o: v for o, v in own.items() if DEFAULTS.get(o.removeprefix(f"-{PREFIX}")) != v}
     named = [o for o, v in options.items() if v and v.lower() in re.findall(r"[\w.-]+", words.lower())]
     given = ", ".join(f"{option} {options[option]}".strip() for option in named or options)
     return f"PETSc refuses {given[:150] or 'its options'}: {words[:120]}"

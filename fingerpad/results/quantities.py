@@ -15,10 +15,10 @@ from geometry.units import in_si
 from variational.state import ContactState
 
 _NOTHING = 1e-6  # in the units of tables: below it all is roundoff
-_PRINTED = {
+_UNITS = {
     "": ("1", 1.0), "%": ("1", 100.0), "mm": ("m", 1e3), "µm": ("m", 1e6), "mm²": ("m^2", 1e6), "kPa": ("Pa", 1e-3)
-}  # fmt: skip
-"""Units of tables that are not those of files, which are SI units, and the factor from SI."""
+} | {unit: (unit, 1.0) for unit in ("N/m", "V", "N", "m", "Pa", "J/m", "J/m^3", "s", "Hz", "Pa/m")}  # fmt: skip
+"""Unit in files and factor from SI, by unit of tables; others are those of :func:`geometry.units.in_si`."""
 SUMS = {"N/m": ("N", 1), "J/m": ("J", 2), "m": ("mm²", 1), "m^2": ("m^3", 2)}
 """Of quantities per metre of finger: the unit of their sum, and :attr:`Output.power`."""
 TABLES = frozenset({"result", "sweep"})
@@ -58,14 +58,18 @@ class Output:
         object.__setattr__(self, "tables", frozenset(self.tables))
 
     @property
+    def _in_files(self) -> tuple[str, float]:
+        return _UNITS.get(self.unit) or in_si(self.unit)
+
+    @property
     def si(self) -> str:
         """Unit in files; 1 for a number without a unit."""
-        return _of_unit(self.unit)[0]
+        return self._in_files[0]
 
     @property
     def scale(self) -> float:
         """Factor from SI to the unit."""
-        return _of_unit(self.unit)[1]
+        return self._in_files[1]
 
     @property
     def power(self) -> int:
@@ -133,13 +137,6 @@ class Output:
                 f"the output {self.name} of step {state.step} cannot be computed ({what}); its function must return a "
                 "number from a ContactState"
             ) from error
-
-
-def _of_unit(unit: str) -> tuple[str, float]:
-    """Return the SI unit of a unit of tables, and the factor from SI."""
-    if unit in _PRINTED or unit in _SI:
-        return _PRINTED.get(unit, (unit, 1.0))
-    return in_si(unit)
 
 
 def _listed(*rows: tuple[Any, ...], error: Mapping[str, str] | None = None, **tables: str) -> dict[str, Output]:
@@ -296,7 +293,6 @@ SLICES = _listed(
 OUTPUTS: tuple[Output, ...] = ()
 """Outputs of the package that are computed from a state, as those of a user are. A new one is an entry here."""
 
-_SI = {"N/m", "V", "N", "m", "Pa", "J/m", "J/m^3", "s", "Hz", "Pa/m"}
 _ORDER = "f_ext voltage mu_app f_t f_electrostatic f_contact contact_length p_max ridges_in_contact".split()
 
 
@@ -338,8 +334,3 @@ def plus_minus_of(parts: Iterable[str]) -> str:
     words = ", ".join(dict.fromkeys(parts))
     said = f"±: error by {words}; what the finger and the model assume is not in it (docs/assumptions.md)."
     return said if words else ""
-
-
-def cell(key: str, value: float, error: float = math.nan) -> str:
-    """Return a quantity of :data:`QUANTITIES` as :meth:`Output.shown` does."""
-    return QUANTITIES[key].shown(value, error)

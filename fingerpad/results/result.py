@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 from fingerpad import launcher
 from fingerpad.results import dataset, loading, printing
-from fingerpad.results.data import Cost, ResultData, checked, valued
+from fingerpad.results.data import ResultData, checked, valued
 from fingerpad.results.headline import Headline, headline
 from fingerpad.results.quantities import Output
+from fingerpad.results.states import load_results
 from fingerpad.scene.messages import SceneError, clip
 from fingerpad.scene.remarks import coefficient
 
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from fingerpad.results.pictures.drawing import Drawing
     from fingerpad.results.spikes import Spikes
 
-KINDS = ("surface", "finger", "history", "footprint", "time", "field", "solid")
+_KINDS = ("surface", "finger", "history", "footprint", "time", "field", "solid")
 """Pictures of a result."""
 
 
@@ -57,8 +58,8 @@ class Result(ResultData):
         Raises:
             ValueError: another kind, or a kind without data in this result.
         """
-        if kind not in KINDS:
-            raise ValueError(f"kind is {kind!r}; it must be one of {', '.join(KINDS)}")
+        if kind not in _KINDS:
+            raise ValueError(f"kind is {kind!r}; it must be one of {', '.join(_KINDS)}")
         if kind in ("footprint", "solid"):
             if self.finger is None:
                 raise ValueError("the result has no whole finger to draw: a history has none, else a note says why")
@@ -135,7 +136,8 @@ class Result(ResultData):
         new = checked(outputs)
         named: dict[str, Any] = {name: valued(state, new) for name, state in self.named.items()}
         steps = tuple(valued(state, new) for state in self.steps)
-        loads = loading.loads_of(self.scene, steps, [load.stable for load in self.loads])
+        stable = {load.end.step: load.stable for load in self.loads}
+        loads = load_results(steps, self.scene.loads(), lambda end: stable.get(end.step), coefficient(self.scene))
         kept = tuple(each for each in self.outputs if each.name not in {one.name for one in new})
         return replace(self, steps=steps, loads=loads, outputs=(*kept, *new), **named)
 
@@ -151,7 +153,7 @@ class Result(ResultData):
         Raises:
             SceneError: it is not of a result.
         """
-        return cls(**loading.parts(data, Cost), folder=folder)
+        return cls(**loading.parts(data), folder=folder)
 
     @classmethod
     def load(cls, folder: str | Path) -> "Result":

@@ -2,10 +2,9 @@
 
 import csv
 import io
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,15 +23,7 @@ _CAUTION = (
 )
 COLUMNS = ("unit", "class", "ridge", "t")
 """Of the table of spikes; t in s."""
-_ABOUT = {
-    "class": ("1", "law of the unit"),
-    "ridge": ("1", "number of the ridge, 0 central; -9999 of a population"),
-    "side": ("1", "side of the ridge where its units have one"),
-    "spikes": ("s", "times of the spikes; NaN beyond the last"),
-    "rate": ("1/s", "number of spikes over the length of the run"),
-    "first": ("s", "time of the first spike; NaN without one"),
-}
-_POPULATION = -9999
+_POPULATION = -9999  # in place of the number of a ridge
 
 
 class Unit(NamedTuple):
@@ -113,42 +104,37 @@ class Spikes:
         """Time of the first spike of each unit (s), shape (units,); NaN without one."""
         return np.array([train[0] if len(train) else np.nan for train in self.trains])
 
-    def rows(self) -> Iterator[dict[str, Any]]:
-        """Yield a row of :data:`COLUMNS` for each spike, unit by unit; the ridge of a population is empty."""
+    def to_csv(self, path: str | Path) -> None:
+        """Write a table of all spikes with :data:`COLUMNS`, unit by unit; the ridge of a population is empty."""
+        text = io.StringIO()
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow(COLUMNS)
         for unit, train in zip(self.units, self.trains, strict=True):
             ridge = "" if unit.ridge is None else unit.ridge
-            yield from ({"unit": unit.number, "class": unit.law, "ridge": ridge, "t": float(t)} for t in train)
-
-    def to_csv(self, path: str | Path) -> None:
-        """Write a table of all spikes."""
-        text = io.StringIO()
-        writer = csv.DictWriter(text, COLUMNS, lineterminator="\n")
-        writer.writeheader()
-        writer.writerows({**row, "t": f"{row['t']:.7g}"} for row in self.rows())
+            writer.writerows((unit.number, unit.law, ridge, f"{t:.7g}") for t in train)
         files.replace(Path(path), text.getvalue())
-
-    def _variables(self) -> dict[str, Any]:
-        longest = max([1, *map(len, self.trains)])
-        padded = np.array([np.pad(train, (0, longest - len(train)), constant_values=np.nan) for train in self.trains])
-        values = {
-            "class": np.array([unit.law for unit in self.units], object),
-            "ridge": np.array([_POPULATION if u.ridge is None else u.ridge for u in self.units], np.int32),
-            "side": np.array([unit.side for unit in self.units], object),
-            "spikes": padded,
-            "rate": self.rate,
-            "first": self.first,
-        }
-        about = {name: {"units": unit, "long_name": words} for name, (unit, words) in _ABOUT.items()}
-        return {name: (("unit", "spike")[: each.ndim], each, about[name]) for name, each in values.items()}
-
-    def _attributes(self) -> dict[str, Any]:
-        return {"title": "fingerpad: spikes of afferents", "seconds": self.seconds, "notes": "\n".join(self.remarks)}
 
     def to_xarray(self) -> "xarray.Dataset":
         """Return classes, ridges, spikes, rates and first spikes along the units, as a dataset with units."""
         import xarray
 
-        return xarray.Dataset(self._variables(), attrs=self._attributes())
+        longest = max([1, *map(len, self.trains)])
+        spikes = [np.pad(train, (0, longest - len(train)), constant_values=np.nan) for train in self.trains]
+        ridges = [_POPULATION if unit.ridge is None else unit.ridge for unit in self.units]
+        words = {
+            "class": ([unit.law for unit in self.units], object, "1", "law of the unit"),
+            "ridge": (ridges, np.int32, "1", f"number of the ridge, 0 central; {_POPULATION} of a population"),
+            "side": ([unit.side for unit in self.units], object, "1", "side of the ridge where its units have one"),
+            "spikes": (spikes, float, "s", "times of the spikes; NaN beyond the last"),
+            "rate": (self.rate, float, "1/s", "number of spikes over the length of the run"),
+            "first": (self.first, float, "s", "time of the first spike; NaN without one"),
+        }
+        about = {"title": "fingerpad: spikes of afferents", "seconds": self.seconds, "notes": "\n".join(self.remarks)}
+        variables = {}
+        for name, (values, kind, unit, meaning) in words.items():
+            array = np.array(values, kind)
+            variables[name] = ("unit", "spike")[: array.ndim], array, {"units": unit, "long_name": meaning}
+        return xarray.Dataset(variables, attrs=about)
 
     def to_netcdf(self, path: str | Path) -> None:
         """Write the dataset as NetCDF 3."""
@@ -156,18 +142,9 @@ class Spikes:
 
     def plot(self, path: str | Path | None = None) -> "Figure":
         """Draw energy densities at Merkel sites over time, and each spike unit by unit below; write a PNG if asked."""
-        from fingerpad.results.pictures.spikes import Curves, Panel, raster  # Matplotlib
+        from fingerpad.results.pictures.curves import raster  # Matplotlib
 
-        panels = []
-        for law in self.laws:
-            units = [unit for unit in self.units if unit.law == law]
-            places = [unit.place for unit in units]
-            population, half = units[0].ridge is None, bool(units[0].side)
-            panels.append(Panel(law, places, [1e3 * train for train in self.of(law)], population, 0.4 if half else 0.8))
-        loads = [(span.name, 1e3 * span.begin, 1e3 * span.end) for span in self.loads]
-        found = self.densities
-        curves = None if found is None else Curves(found.ridges, 1e3 * found.time, 1e-3 * found.values)
-        return raster(panels, curves, loads, 1e3 * self.seconds, None if path is None else Path(path))
+        return raster(self, path)
 
     @property
     def remarks(self) -> tuple[str, ...]:

@@ -19,6 +19,7 @@ from fingerpad.results.over_time import OverTime, over_time, without_parts_of_ju
 from fingerpad.results.quantities import EXTREMES
 from fingerpad.scene import Load
 from fingerpad.scene.waveform import Waveform
+from variational.caution import Caution
 from variational.state import ContactState
 
 _STILL = 1e-12  # m, largest sideways displacement of a bone at rest
@@ -71,34 +72,21 @@ def full_slip(rows: Sequence[ContactState], row: ContactState, steady: float, le
         return 0, False
     last = rows[-1] if rows else None
     first = next((r for r in reversed(rows) if last is not None and r.step == last.slip_began), None)
-    if last is None or first is None or not unchanged(first, row, steady, least):
+    if last is None or first is None or not _unchanged(first, row, steady, least):
         return row.step, False
     far = abs(row.bone_x - first.bone_x) >= SLIDE_ON * (1 - _ROUNDOFF)
     return first.step, bool(last.slip_held or far)
 
 
-def unchanged(first: ContactState, row: ContactState, steady: float, least: float) -> bool:
-    """Return whether two states have the same amount of voltage and forces.
-
-    Args:
-        first: the one state.
-        row: the other one.
-        steady: relative change of the forces that is not significant.
-        least: change of the forces (N/m) that is not significant.
-    """
+def _unchanged(first: ContactState, row: ContactState, steady: float, least: float) -> bool:
+    """Return whether two states have the same amount of voltage and forces; see :func:`full_slip`."""
     same = abs(abs(row.voltage) - abs(first.voltage)) <= _ROUNDOFF * abs(first.voltage)
     pairs = ((first.f_t, row.f_t), (first.f_ext, row.f_ext))
     return bool(same and all(abs(b - a) <= steady * abs(a) + least for a, b in pairs))
 
 
-def _prescribed_states(rows: Sequence[ContactState], names: Sequence[str] = ()) -> list[ContactState]:
-    """Return the states of the loads, without the automatic first touch, unless a load has its name."""
-    loads = {row.load_number: row.load for row in rows} | dict(enumerate(names, start=1))
-    return [row for row in rows if _counts(row, loads[row.load_number])]
-
-
-def _counts(row: ContactState, load: str) -> bool:
-    """Return whether a state of a load is none of its first touch."""
+def _of_load(row: ContactState, load: str) -> bool:
+    """Return whether a state of a load is none of the automatic first touch, unless the load has its name."""
     return row.load != FIRST_TOUCH or load == FIRST_TOUCH
 
 
@@ -109,34 +97,25 @@ def named(rows: Sequence[ContactState], names: Sequence[str] = ()) -> dict[str, 
         rows: states of the history.
         names: of its loads in order; by default those that the last states have.
     """
-    asked = {row.step for row in _prescribed_states(rows, names)}
-    still = [row for row in before_sliding(rows) if row.ridges_in_contact > 0 and row.step in asked]
+    loads = {row.load_number: row.load for row in rows} | dict(enumerate(names, start=1))
+    touching = (row for row in before_sliding(rows) if row.ridges_in_contact > 0)
+    still = [row for row in touching if _of_load(row, loads[row.load_number])]
     uncharged = still[: next((k for k, row in enumerate(still) if row.voltage != 0), len(still))]
     held = next((row.slip_began for row in reversed(rows) if row.slip_held), None)
     found = {"uncharged": uncharged[-1:], "charged": still[-1:], "full_slip": [r for r in rows if r.step == held][:1]}
     return {name: part[0] for name, part in found.items() if len(part)}
 
 
-def partial_slip(rows: Sequence[ContactState]) -> ContactState | None:
-    """Return the state in which the slipping part of the points is nearest to one half, None without such a state.
-
-    Only states before the last full slip count, or all states without full slip. States in which every point slips do
-    not count.
-    """
-    found = named(rows)
-    last = found.get("full_slip", rows[-1]).step
-    return nearest_to_half(rows, last)
-
-
-def nearest_to_half(rows: Sequence[ContactState], last: float = math.inf) -> ContactState | None:
-    """Return the state of sliding without full slip, up to a step, of which the slipping part is nearest to one half.
+def partial_slip(rows: Sequence[ContactState], last: float | None = None) -> ContactState | None:
+    """Return the state of sliding without full slip of which the slipping part is nearest to one half; None without.
 
     Args:
         rows: states of a history.
-        last: number of the step.
+        last: number of the last step that may be it; by default that of the last full slip, if there is one.
     """
-    way = rows[len(before_sliding(rows)) :]
-    some = [row for row in way if row.step <= last and not row.slip_began]
+    if last is None:
+        last = named(rows).get("full_slip", rows[-1]).step
+    some = [row for row in rows[len(before_sliding(rows)) :] if row.step <= last and not row.slip_began]
     return min(some, key=lambda row: abs(row.slipping - 0.5)) if some else None
 
 
@@ -217,24 +196,24 @@ class LoadResult:
 def load_results(
     rows: Sequence[ContactState],
     loads: Sequence[Load],
-    stable: Callable[[int, ContactState], bool | None],
+    stable: Callable[[ContactState], bool | None],
     mu_0: float | None = None,
-) -> Iterator[LoadResult]:
-    """Yield the result of each load.
+) -> tuple[LoadResult, ...]:
+    """Return the result of each load.
 
     Args:
         rows: states of the history.
         loads: its loads.
-        stable: whether the state at the end of a load is stable, by the load's place among those with a state; None
-            where this was not examined.
+        stable: returns whether the state at the end of a load is stable; None where this was not examined.
         mu_0: friction coefficient of Coulomb's law; None of another law.
     """
-    before: list[ContactState] = []
-    for k, (name, mine) in enumerate(by_load(rows)):
+    found, before = list[LoadResult](), list[ContactState]()
+    for name, mine in by_load(rows):
         load = next(iter(loads[mine[-1].load_number - 1 :]), None)
-        named, wave = (name, None) if load is None else (load.name, load.wave)  # a first touch may be all there is
-        yield load_result(named, mine, stable(k, mine[-1]), before, wave, mu_0)
+        given = (name, None) if load is None else (load.name, load.wave)  # a first touch may be all there is
+        found.append(load_result(given[0], mine, stable(mine[-1]), before, given[1], mu_0))
         before = mine[-1:]
+    return tuple(found)
 
 
 def load_result(
@@ -248,8 +227,8 @@ def load_result(
     """Return the result of a load.
 
     Args:
-        name: name of the load.
-        mine: states of the load.
+        name: of the load.
+        mine: its states.
         stable: whether the state at its end is stable, None where this was not examined.
         before: the state at its begin, if there is one.
         wave: its voltage over time; None where it is constant.
@@ -258,7 +237,7 @@ def load_result(
     # A waveform has a state of its own at its begin, after a jump from the voltage before.
     begin = [] if wave is not None else before or ([UNLOADED] if mine[0].time > 0 else [])
     passed = over_time([*begin, *mine], wave)
-    own = [state for state in mine if _counts(state, name)] or mine
+    own = [state for state in mine if _of_load(state, name)] or mine
     if passed is not None:
         own = without_parts_of_jumps(own, passed.start) if wave is not None else [*begin, *own]
     extremes = {}
@@ -290,14 +269,14 @@ def _needed(states: Sequence[ContactState], mu_0: float | None) -> float:
     return found if found > abs(end.bone_x) else math.nan
 
 
-def long_steps(loads: Iterable[LoadResult], least: float) -> list[str]:
-    """Return a sentence for each load at a constant voltage whose steps are too long for its means.
+def long_steps(loads: Iterable[LoadResult], least: float) -> list[Caution]:
+    """Return a caution for each load at a constant voltage whose steps are too long for its means.
 
     Args:
         loads: of a run.
         least: friction force (N/m) up to which there is none.
     """
-    found = list[str]()
+    found = list[Caution]()
     for load in loads:
         changes = {} if load.over_time is None else load.over_time.mean_change
         for key, (words, unit, factor) in _MEANS.items():
@@ -305,9 +284,10 @@ def long_steps(loads: Iterable[LoadResult], least: float) -> list[str]:
             most = 0.0 if ends is None else max(abs(ends.min), abs(ends.max))
             change = changes.get(key, 0.0)
             if change > _MEAN_TOLERANCE * most and (key != "f_t" or load.rubs(least)):
-                found.append(
+                text = (
                     f"In the load {load.name} the mean {words} over time would change by {factor * change:.2g} {unit} "
                     "with every second step alone: its steps are too long for it; give a smaller numerics.step_scale."
                 )
+                found.append(Caution("long_steps", text, change))
                 break
     return found

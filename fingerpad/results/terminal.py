@@ -13,7 +13,7 @@ from collections.abc import Callable, Collection
 from typing import TYPE_CHECKING, TextIO
 
 from fingerpad import launcher, notebook
-from fingerpad.results.quantities import PER_LENGTH, cell
+from fingerpad.results.quantities import PER_LENGTH, QUANTITIES
 from variational.state import ContactState, StepRecord
 
 if TYPE_CHECKING:
@@ -36,11 +36,7 @@ _LOAD_TOLERANCE = 1e-9  # of a load's end
 
 
 def watched(stream: TextIO | None = None) -> bool:
-    """Return whether a person watches a stream, to whom progress bars and colours may be shown.
-
-    Args:
-        stream: standard output if None.
-    """
+    """Return whether a person watches a stream (standard output), to whom bars and colours may be shown."""
     stream = sys.stdout if stream is None else stream
     if launcher.rank() or os.environ.get("NO_COLOR") or os.environ.get("TERM", "dumb") == "dumb" or not stream.isatty():
         return False
@@ -73,9 +69,8 @@ class Pace:
         """Start.
 
         Args:
-            loads: number of loads.
-            first: number of the load from which on the pace is counted, as of a waveform, whose steps take longer than
-                those before; until then the time left is not known.
+            loads: their number.
+            first: load from which on the pace is counted, as of a waveform, whose steps take longer than those before.
             clock: returns the time (s).
         """
         self._loads, self._first, self._clock = loads, first, clock
@@ -84,12 +79,7 @@ class Pace:
         """Part of the loads that is done."""
 
     def at(self, done: float, slipped: float = 0.0) -> None:
-        """Take how far the run is.
-
-        Args:
-            done: part of the loads that is done, each load the same part.
-            slipped: part of the present load, where it ends with full slip: friction over its largest value.
-        """
+        """Take the part of the loads that is done, and of a load that ends with full slip friction over its largest."""
         number = min(done, 1.0) * self._loads
         k = min(int(number + _LOAD_TOLERANCE), self._loads - 1)
         part = number - k
@@ -118,23 +108,17 @@ class Console:
 
         Args:
             comm: communicator of the run.
-            lines: whether to print lines; a program of one's own prints its own.
+            lines: whether to print lines.
             bar: whether to show the bar.
             on_step: called with each accepted state and the part of the run that is done, on every rank.
         """
-        from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn  # not for those who only read
+        from rich.progress import BarColumn, Progress, TimeElapsedColumn  # not for those who only read
 
         self._lines, self._on_step = lines and comm.rank == 0, on_step
         self._cell = notebook.Bar() if bar and comm.rank == 0 and notebook.running() else None
-        self._progress = Progress(
-            TextColumn("{task.description}"),
-            BarColumn(),
-            TextColumn("{task.percentage:3.0f} %"),
-            TimeElapsedColumn(),
-            TextColumn("{task.fields[left]}"),
-            disable=comm.rank != 0 or not (bar and watched()),
-            transient=True,
-        )
+        columns = BarColumn(), "{task.percentage:3.0f} %", TimeElapsedColumn(), "{task.fields[left]}"
+        hidden = comm.rank != 0 or not (bar and watched())
+        self._progress = Progress("{task.description}", *columns, disable=hidden, transient=True)
         self._task = self._progress.add_task("starting", total=1.0, left="")
         self.expect(1)
         if not self._progress.disable:
@@ -149,23 +133,11 @@ class Console:
                 self._lines = False
 
     def expect(self, loads: int, slipping: Collection[str] = (), mu_0: float = 0.0, first: int = 0) -> None:
-        """Take what a path that starts now is made of.
-
-        Args:
-            loads: number of its loads.
-            slipping: names of the loads that end with full slip.
-            mu_0: friction coefficient.
-            first: number of the load from which on its pace counts, see :class:`Pace`.
-        """
+        """Start a path: its number of loads, those that end with full slip, µ_0, and ``first`` of :class:`Pace`."""
         self._pace, self._slipping, self._mu_0 = Pace(loads, first), slipping, mu_0
 
     def phase(self, text: str, part: float | None = None) -> None:
-        """Show what is being done besides steps: in the bar, or as a line where there is none.
-
-        Args:
-            text: what is being done.
-            part: of it that is done; 0 where it begins. Without it, the time left is not known.
-        """
+        """Show what is being done besides steps, in the bar or as a line, and the part of it that is done from 0 on."""
         if part == 0:
             self._pace = Pace()
         if part is not None:
@@ -181,21 +153,16 @@ class Console:
             self.show(line)
 
     def step(self, s: ContactState, done: float) -> None:
-        """Print an accepted state.
-
-        Args:
-            s: the state; with its record, if it was reached by a step of a path.
-            done: part of the whole history that is done.
-        """
+        """Print an accepted state, with the part of the whole history that is done."""
         work = "" if s.record is None else f"{s.record.newton_iterations:6d} {s.record.factorisations:5d}"
-        jump = "" if s.record is None or not s.record.jump else f"  jump, {_released(s.record)}"
         most = self._mu_0 * s.f_contact if s.load in self._slipping else 0.0
         self._pace.at(done, abs(s.f_t) / most if most > 0 else 0.0)
-        left, mu = self._pace.left(), cell("mu_app", s.mu_app)
+        left, mu = self._pace.left(), QUANTITIES["mu_app"].shown(s.mu_app)
         self.show(
             f"{s.step:4d} {s.load[:7]:7s} {s.f_ext:7.3f} {s.voltage:z5.1f} {s.bone_x * 1e3:z7.4f} "
             f"{s.bone_height * 1e3:z8.5f} {s.f_t:z8.4f} {mu:>7s} {s.f_electrostatic:7.3f} "
-            f"{s.ridges_in_contact:6d} {s.contact_length * 1e3:8.4f} {work:12s}  {left}{jump}"
+            f"{s.ridges_in_contact:6d} {s.contact_length * 1e3:8.4f} {work:12s}  {left}"
+            f"{_jump(s.record) if s.record else ''}"
         )
         loads = f"{s.load}: {s.f_ext:.1f} N/m, {s.voltage:.0f} V, x {s.bone_x * 1e3:.2f} mm"
         words = loads if math.isnan(s.mu_app) else f"{loads}, µ_app {s.mu_app:z.3f}"
@@ -217,9 +184,10 @@ class Console:
             self._progress.stop()
 
 
-def _released(record: StepRecord) -> str:
+def _jump(record: StepRecord) -> str:
     """Return the energy that a jump released in words, or below what it is where its own error hides it."""
     value, error = record.energy_released, record.released_error
-    if abs(value) <= error:
-        return f"energy released below {max(value, 0.0) + error:.2g} J/m"
-    return f"{value:.2g} ± {error:.1g} J/m released"
+    if not record.jump:
+        return ""
+    below = f"energy released below {max(value, 0.0) + error:.2g} J/m"
+    return f"  jump, {below if abs(value) <= error else f'{value:.2g} ± {error:.1g} J/m released'}"

@@ -27,12 +27,7 @@ class Writer:
     """
 
     def __init__(self, place: Folder | None, comm: "MPI.Comm | Serial") -> None:
-        """Write nothing before :meth:`take`.
-
-        Args:
-            place: the folder, locked; None to write nothing at all.
-            comm: communicator of the run.
-        """
+        """Write nothing before :meth:`take`, and nothing at all without a folder, which is locked."""
         self._place, self.comm, self._taken = place, comm, False
         self.folder = None if place is None else place.folder
         self._tables: dict[str, Table] = {}
@@ -66,12 +61,7 @@ class Writer:
             self._tables[name].write(row)
 
     def lost(self, why: str, trace: str) -> None:
-        """Print and log, on rank 0, what a result has to do without.
-
-        Args:
-            why: in one sentence.
-            trace: of the error.
-        """
+        """Print and log, on rank 0, why a result has to do without something, in one sentence, with its traceback."""
         if self.comm.rank == 0:
             print(f"fingerpad: {why}", file=sys.stderr, flush=True)
             with suppress(OSError):  # a full disk; what is there stays

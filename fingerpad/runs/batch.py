@@ -79,7 +79,7 @@ def point(parameters: Mapping[str, Any], folder: str, limit: float, model: str, 
         parameters: of the scene, ready for JSON.
         folder: of the scene's results.
         limit: processor time (s).
-        model: a name of :data:`fingerpad.reduced.registry.MODELS`.
+        model: a name of :data:`fingerpad.runs.solve.MODELS`.
         law_folders: of laws of one's own.
     """
     place = Path(folder)
@@ -118,7 +118,7 @@ def sweep(
         folder: of all results.
         jobs: processes at a time, without an executor.
         limit: processor time for one scene (s).
-        model: a name of :data:`fingerpad.reduced.registry.MODELS`, of one that meshes.
+        model: a name of :data:`fingerpad.runs.solve.MODELS`, of one that meshes.
         quiet: whether to print nothing, and show no bar.
         executor: of ``concurrent.futures``, whose workers share the folder.
     """

@@ -11,7 +11,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from fingerpad.accuracy.states import State, StateRecorder
+from fingerpad.accuracy.solves import StateRecorder
+from fingerpad.accuracy.states import State
 from fingerpad.model.finger import Step
 from fingerpad.model.full_slip import Conditions, FullSlips, Solved
 from fingerpad.model.options import FingerModel

@@ -23,8 +23,8 @@ from typing import Any, NamedTuple
 from fingerpad.startup import MPI  # isort: skip  # before the libraries of finite elements
 from fingerpad.accuracy.estimate import errors_of
 from fingerpad.accuracy.richardson import of_two_meshes, rigid
-from fingerpad.accuracy.solves import solve_again
-from fingerpad.accuracy.states import Solve, StateRecorder, with_values
+from fingerpad.accuracy.solves import StateRecorder, solve_again
+from fingerpad.accuracy.states import Solve, with_values
 from fingerpad.model.cautions import lost
 from fingerpad.model.drive_loads import EQUAL, gap_factor
 from fingerpad.model.finger import Finger
@@ -48,6 +48,7 @@ from fingerpad.scene import Scene, from_data
 from fingerpad.scene.messages import counted
 from fingerpad.scene.reading import DEFAULT_MODEL
 from fingerpad.scene.remarks import coefficient
+from variational.caution import Caution
 from variational.element import ELEMENTS
 from variational.solvers.continuation import StepFailed
 from variational.solvers.outcome import Counts
@@ -260,14 +261,13 @@ def _of_state(
         notes: on how the state was found.
     """
     newton, factorisations = cost.newton_iterations - before.newton, cost.factorisations - before.factorisations
-    unknowns, record, cautions = finger.unknowns, dict[str, Any](), list[str]()
+    unknowns, record, cautions = finger.unknowns, dict[str, Any](), list[Caution]()
     words = "without an error estimate; it was reached by"
     if fine is not None:
         if fine.state.ridges_in_contact != state.ridges_in_contact:
             own, larger = (f"{s.f_t:.6g} N/m with {counted(s.ridges_in_contact, 'ridge')}" for s in (fine.state, state))
-            cautions = [
-                f"full slip has f_T {own} on the scene's mesh, and {larger} on larger elements: the error has both"
-            ]
+            words = f"full slip has f_T {own} on the scene's mesh, and {larger} on larger elements: the error has both"
+            cautions = [Caution("ridges_differ", words, fine.state.f_t)]
         state, solve = fine
         newton, factorisations = newton + solve.newton, factorisations + solve.factorisations
         unknowns, words = solve.unknowns, "solved for again on the scene's mesh; on larger elements it was reached by"
@@ -313,7 +313,7 @@ def _with_other(result: Result, other: ContactState) -> Result:
     mine = result.full_slip
     assert mine is not None
     both = [f"f_T {s.f_t:.6g} N/m with {counted(s.ridges_in_contact, 'ridge')} ({s.reached})" for s in (mine, other)]
-    caution = f"there are two states of full slip: {both[0]} and {both[1]}"
+    caution = Caution("two_states", f"there are two states of full slip: {both[0]} and {both[1]}", other.f_t)
     record = result.record | {OTHER: {name: getattr(other, name) for name in (*SWEPT, "reached")}}
     return replace(result, record=record, cautions=(*result.cautions, caution))
 

@@ -14,13 +14,12 @@ from dataclasses import dataclass
 
 from fingerpad.reduced.cylinders import Cylinders
 from fingerpad.reduced.model import Model
-from fingerpad.reduced.registry import find
 from fingerpad.results.data import Number
 from fingerpad.results.quantities import EXTREMES, FINGER, QUANTITIES, Output, plus_minus_of
 from fingerpad.results.result import Result
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.roots import EQUAL, Axis, Roots, axis
-from fingerpad.runs.solve import checked, solved
+from fingerpad.runs.solve import checked, find, solved
 from fingerpad.scene import Scene, with_values
 from fingerpad.scene.messages import SceneError, clip, show
 from fingerpad.scene.remarks import drive_in_short, other_under_a_drive
@@ -152,7 +151,7 @@ def solve(
         relative: whether the target is a multiple of the value without voltage: 2 for twice the friction.
         between: first and last value of the key, in SI or as texts with a unit; by default that of
             :data:`fingerpad.runs.roots.RANGES`, or a tenth to ten times the scene's value.
-        model: a name of :data:`fingerpad.reduced.registry.MODELS`, of a model without a path.
+        model: a name of :data:`fingerpad.runs.solve.MODELS`, of a model without a path.
         **target: one quantity and its value, in SI or as a text with a unit: ``mu_app=0.4``, ``f_t="0.3 N"``.
 
     Returns:

@@ -11,6 +11,7 @@ the others waiting. Ranks agree after each entry whether it failed on any of the
 import traceback
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
+from functools import partial
 from pkgutil import resolve_name
 from typing import NamedTuple
 
@@ -23,7 +24,8 @@ from fingerpad.results.quantities import Output
 from fingerpad.results.result import Result
 from fingerpad.results.writing import Writer
 from fingerpad.runs.context import BEGUN, RunContext
-from fingerpad.scene.messages import SceneError, alike, clip
+from fingerpad.scene.messages import SceneError, clip
+from variational.caution import Caution
 from variational.state import ContactState
 
 _LONGEST = 300  # characters of a failure in a note, whose traceback is in run.log
@@ -35,37 +37,30 @@ class Entry(NamedTuple):
 
     name: str
     """In notes, with its article where it has one."""
-    needs: Callable[[Result, RunContext], bool]
-    """Whether a result has it, and a run wants it."""
     compute: str | Callable[[Result], object]
     """Takes the result, and returns it with what is new; what makes a file returns nothing of use. A text is the place
     of a function, ``module:function``, which is imported when it is needed."""
+    needs: Callable[[Result, RunContext], bool] = lambda *_: True
+    """Whether a result has it, and a run wants it."""
     files: bool = False
     """Whether it makes a file, of a result that is written: after all others, and on rank 0 alone."""
 
 
 # -- values ------------------------------------------------------------------------------------------------
-def with_cautions(result: Result, found: Iterable[str]) -> Result:
+def with_cautions(result: Result, found: Iterable[Caution]) -> Result:
     """Return a result with further cautions, but for those that it has with other numbers."""
-    known = {alike(text) for text in result.cautions}
-    return replace(result, cautions=(*result.cautions, *(text for text in found if alike(text) not in known)))
+    known = {each.form for each in result.cautions}
+    return replace(result, cautions=(*result.cautions, *(each for each in found if each.form not in known)))
 
 
 def _cautions(result: Result, states: Sequence[ContactState]) -> Result:
     """Return a result of the full model with the notes on its drives, and the cautions on scene, states and loads."""
-    from fingerpad.model.cautions import on_scene, without_slip
+    from fingerpad.model.cautions import examine, on_scene
     from fingerpad.results.over_time import NOTE
-    from fingerpad.results.states import long_steps
-    from fingerpad.scene.remarks import leakage
 
-    scene, loads = result.scene, result.scene.loads()
-    notes = [*leakage(scene), *([NOTE] if any(load.takes_time for load in loads) else [])]
-    lacks_slip = result.full_slip is None and any(load.until_full_slip for load in loads) and not result.failure
-    found = [
-        *on_scene(scene, states),
-        *long_steps(result.loads, result.record.get("force_error", 0.0)),
-        *(without_slip(states, scene.closure()) if lacks_slip else []),
-    ]
+    scene = result.scene
+    notes = [*map(str, examine("note", scene)), *([NOTE] if any(load.takes_time for load in scene.loads()) else [])]
+    found = [*on_scene(scene, states), *examine("result", result, states)]
     return with_cautions(replace(result, notes=tuple(dict.fromkeys((*result.notes, *notes)))), found)
 
 
@@ -75,7 +70,7 @@ def cautions_on(states: Sequence[ContactState] = ()) -> Entry:
     Args:
         states: that it was computed from; by default its steps, or its named states.
     """
-    return Entry("cautions", _followed, lambda each: _cautions(each, states or each.steps or [*each.named.values()]))
+    return Entry("cautions", lambda each: _cautions(each, states or each.steps or [*each.named.values()]), _follows)
 
 
 def _sums(result: Result) -> Result:
@@ -100,60 +95,49 @@ def _picture(kind: str) -> Callable[[Result], None]:
     return draw
 
 
-def _followed(result: Result, context: RunContext) -> bool:
-    return bool(resolve_name("fingerpad.reduced.registry:follows_path")(result.model))
+def _follows(result: Result, _: RunContext) -> bool:
+    return result.follows_path
 
 
 def _page(result: Result, context: RunContext) -> bool:
     return context.report and result.folder is not None
 
 
-SUMS = Entry("sums of outputs", lambda result, _: result.finger is not None, _sums)
-WORDS = Entry("headline", lambda result, _: True, _words)
-BANDS = Entry(
-    "bands of friction",
-    lambda result, context: context.report or _followed(result, context),
-    "fingerpad.reduced.closure_band:with_band",
+SUMS = Entry("sums of outputs", _sums, lambda result, _: result.finger is not None)
+WORDS = Entry("headline", _words)
+BANDS = Entry("bands of friction", "fingerpad.reduced.closure_band:with_band", lambda r, c: c.report or r.follows_path)
+NEWTONS = Entry(
+    "newtons of the whole finger",
+    "fingerpad.slices.estimate:with_newtons",
+    lambda r, _: r.follows_path and r.finger is None,
 )
 POST: list[Entry] = [
-    Entry(
-        "newtons of the whole finger",
-        lambda result, c: _followed(result, c) and result.finger is None,
-        "fingerpad.slices.estimate:with_newtons",
-    ),
+    NEWTONS,
     SUMS,
     BANDS,
     cautions_on(),
     WORDS,
     Entry(
         "footprint.png",
-        lambda r, c: _page(r, c) and r.finger is not None and (r.whole or not r.steps),
         _picture("footprint"),
+        lambda r, c: _page(r, c) and r.finger is not None and (r.whole or not r.steps),
         files=True,
     ),
-    Entry("solid.png", lambda r, c: _page(r, c) and r.finger is not None and r.whole, _picture("solid"), files=True),
-    Entry("report", _page, "fingerpad.report.write:of_result", files=True),
+    Entry("solid.png", _picture("solid"), lambda r, c: _page(r, c) and r.finger is not None and r.whole, files=True),
+    Entry("report", "fingerpad.report.write:of_result", _page, files=True),
 ]
 """What follows from the states of a result, in order."""
 
 
 def of_outputs(outputs: Sequence[Output]) -> list[Entry]:
     """Return the entries of outputs of one's own, for results whose states do not have them yet."""
-
-    def computed(output: Output) -> Callable[[Result], Result]:
-        return lambda result: result.with_outputs([output])
-
-    return [Entry(f"output {each.name}", lambda *_: True, computed(each)) for each in checked(outputs)]
+    return [Entry(f"output {each.name}", partial(Result.with_outputs, outputs=[each])) for each in checked(outputs)]
 
 
 def of_kept(outputs: Sequence[Output]) -> list[Entry]:
     """Return the entries of outputs of one's own, for results that were read from their files, with their sums."""
-
-    def needs(result: Result, context: RunContext) -> bool:
-        return _followed(result, context) and result.finger is not None and not result.whole
-
-    sums = [POST[0]._replace(needs=needs), SUMS] if any(each.sum for each in outputs) else []
-    return [*of_outputs(outputs), *sums]
+    again = NEWTONS._replace(needs=lambda r, _: r.follows_path and r.finger is not None and not r.whole)
+    return [*of_outputs(outputs), *([again, SUMS] if any(each.sum for each in outputs) else [])]
 
 
 # -- where a result is made --------------------------------------------------------------------------------

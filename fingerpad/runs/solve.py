@@ -1,4 +1,4 @@
-"""Run a scene, or many: what ``import fingerpad`` gives for that."""
+"""The models by name, and a scene run by one of them: what ``import fingerpad`` gives for that."""
 
 import json
 import os
@@ -12,8 +12,11 @@ from typing import TYPE_CHECKING, Any
 
 from fingerpad import launcher
 from fingerpad.launcher import needed_by, source, version
-from fingerpad.model.cautions import breakdown_ahead
-from fingerpad.reduced.registry import find
+from fingerpad.model.cautions import examine
+from fingerpad.model.options import check
+from fingerpad.reduced.cylinders import Cylinders
+from fingerpad.reduced.model import Model
+from fingerpad.results.data import FULL_WORDS, MODEL_WORDS
 from fingerpad.results.data import checked as checked_outputs
 from fingerpad.results.files import replace_json
 from fingerpad.results.folder import CheckpointError, FolderError, Serial, on_rank_0
@@ -29,8 +32,43 @@ from variational.coefficients import LawError
 from variational.state import ContactState
 
 if TYPE_CHECKING:
-    from fingerpad.reduced.model import Model
     from fingerpad.startup import MPI
+
+
+class _Full(Model):
+    """The whole cross-section with every ridge, along the path of its loads (:mod:`fingerpad.runs.full`)."""
+
+    name, words = DEFAULT_MODEL, FULL_WORDS
+    traces = "traces of the full model"
+    meshes = path = resumes = True
+
+    def check(self, scene: Scene) -> None:
+        """Refuse a scene whose finger cannot be built or meshed, see :func:`fingerpad.model.options.check`."""
+        check(scene)
+
+    def solve(self, scene: Scene, context: RunContext) -> Result:
+        """Reach every load, see :func:`fingerpad.runs.full.run`; collective."""
+        from fingerpad.runs import full  # finite elements
+
+        return full.run(scene, context)
+
+
+MODELS: dict[str, Model] = {
+    "cylinders": Cylinders(),
+    "full": _Full(),
+}
+"""The models by name, the cheapest first: where a reduced model of one's own is registered."""
+
+
+def find(name: str) -> Model:
+    """Return a model by its name.
+
+    Raises:
+        SceneError: there is none.
+    """
+    if not (isinstance(name, str) and name in MODELS):
+        raise SceneError(f"model is {show(name)}; it must be {' or '.join(map(repr, MODELS))}")
+    return MODELS[name]
 
 
 def run(
@@ -51,7 +89,7 @@ def run(
     Args:
         scene: the scene; by default press, charge and slide of the default finger.
         out: folder for tables, pictures, fields and ``summary.json``; without it nothing is written.
-        model: a name of :data:`fingerpad.reduced.registry.MODELS`: ``"full"``, every ridge along the whole path
+        model: a name of :data:`MODELS`: ``"full"``, every ridge along the whole path
             (minutes); ``"cylinders"``, a closed form (at once).
         comm: communicator; by default of all ranks.
         resume: go on from where a run of the same scene in ``out`` was cut short; only of the full model.
@@ -77,8 +115,8 @@ def run(
         raise SceneError(
             f"resume is true, out is {show(out)} and model {show(model)}; only a full run in a folder can go on"
         )
-    for caution in breakdown_ahead(scene.resolved()) if way.path and launcher.rank() == 0 else ():
-        warnings.warn(caution, stacklevel=2)
+    for caution in examine("load", scene.resolved()) if way.path and launcher.rank() == 0 else ():
+        warnings.warn(str(caution), stacklevel=2)
     context = RunContext(None if out is None else Path(out), comm, resume=resume, outputs=outputs, on_step=on_step)
     result = solved(scene, way, context)
     if result.interrupted:
@@ -109,12 +147,12 @@ def stopped(result: Result) -> BaseException:
     return error
 
 
-def solved(scene: Scene, model: "Model", context: RunContext) -> Result:
+def solved(scene: Scene, model: Model, context: RunContext) -> Result:
     """Return what a model answers to a scene with all its laws; collective.
 
     Args:
         scene: the scene.
-        model: one of :data:`fingerpad.reduced.registry.MODELS`.
+        model: one of :data:`MODELS`.
         context: all else.
     """
     context = replace(context, outputs=checked_outputs(context.outputs))
@@ -127,7 +165,7 @@ def solved(scene: Scene, model: "Model", context: RunContext) -> Result:
         raise SceneError(str(error)) from error
 
 
-def _section(scene: Scene, model: "Model", context: RunContext) -> Result:
+def _section(scene: Scene, model: Model, context: RunContext) -> Result:
     """Return what a model answers to a scene without a force, with its finger and band, in a folder; collective."""
     result = _solved(scene, model, context)
     if model.path:
@@ -139,11 +177,11 @@ def _section(scene: Scene, model: "Model", context: RunContext) -> Result:
         here = replace(context, folder=None)
         return traces.with_sum(result, model, lambda each: _solved(each, model, here), context.outputs)
 
-    own = [Entry("newtons of the whole finger", lambda *_: model.sums, with_sum), *of_outputs(context.outputs)]
+    own = [Entry("newtons of the whole finger", with_sum, lambda *_: model.sums), *of_outputs(context.outputs)]
     return kept(result, context, own)
 
 
-def _solved(scene: Scene, model: "Model", context: RunContext) -> Result:
+def _solved(scene: Scene, model: Model, context: RunContext) -> Result:
     """Return what a model answers to a scene without a force; one with a path writes into a folder; collective."""
     with needed_by(f"the model {model.name!r}"):
         if model.meshes:
@@ -156,7 +194,7 @@ def _solved(scene: Scene, model: "Model", context: RunContext) -> Result:
     if model.path:
         return result
     versions = {"versions": {"fingerpad": version(), "source": source()}}
-    return replace(result, record={**result.record, "provenance": versions})
+    return replace(result, record=result.record | {"provenance": versions, MODEL_WORDS: model.words})
 
 
 def _refuse_different(scene: Scene, comm: "MPI.Comm | Serial") -> None:
@@ -179,7 +217,7 @@ def _refuse_different(scene: Scene, comm: "MPI.Comm | Serial") -> None:
                 )
 
 
-def _whole(scene: Scene, model: "Model", context: RunContext) -> Result:
+def _whole(scene: Scene, model: Model, context: RunContext) -> Result:
     """Return the result of a force on the whole finger; what an earlier run has finished is taken from its folder."""
     from fingerpad.slices import traces
 
@@ -199,7 +237,7 @@ def _whole(scene: Scene, model: "Model", context: RunContext) -> Result:
     return kept(found, context, of_outputs(context.outputs))
 
 
-def continued(scene: Scene, model: "Model", context: RunContext) -> Result:
+def continued(scene: Scene, model: Model, context: RunContext) -> Result:
     """Return the result of a scene that its folder may have, whole or in part; collective."""
     folder = context.folder
     if folder is None:
@@ -218,7 +256,7 @@ def main(file: Path, folder: Path, model: str) -> None:
     Args:
         file: the scene's parameters in JSON.
         folder: of the results.
-        model: a name of :data:`fingerpad.reduced.registry.MODELS`.
+        model: a name of :data:`MODELS`.
     """
     scene, way = from_data(json.loads(file.read_text(encoding="utf-8"))), find(model)
     try:

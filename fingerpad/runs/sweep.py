@@ -14,7 +14,7 @@ import numpy as np
 
 from fingerpad import launcher
 from fingerpad.launcher import source, version
-from fingerpad.reduced.registry import MODELS, find
+from fingerpad.model.cautions import examine
 from fingerpad.report.write import attempt
 from fingerpad.results.data import checked as checked_outputs
 from fingerpad.results.files import FORMAT, below, check_folder, replace_json
@@ -23,12 +23,11 @@ from fingerpad.results.result import Result
 from fingerpad.runs import batch, chains
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.post import applied, of_kept
-from fingerpad.runs.solve import checked, solved
+from fingerpad.runs.solve import MODELS, checked, find, solved
 from fingerpad.runs.sweep_results import FILE, Sweep
 from fingerpad.scene import Scene, value_of, with_values
 from fingerpad.scene.messages import SceneError, clip, show
 from fingerpad.scene.reading import DEFAULT_MODEL, plain
-from fingerpad.scene.remarks import leakage
 from variational.state import PATH
 
 if TYPE_CHECKING:
@@ -65,7 +64,7 @@ def sweep(
         out: folder of the results, of ``table.csv`` and of ``report.html``; None to write nothing, of a model without
             finite elements alone.
         jobs: points that are run at a time.
-        model: a name of :data:`fingerpad.reduced.registry.MODELS`, ``"full"`` or ``"cylinders"``.
+        model: a name of :data:`fingerpad.runs.solve.MODELS`, ``"full"`` or ``"cylinders"``.
         quiet: whether to print no line for each point, and show no progress bar.
         outputs: further quantities, each computed from every state; the folders of the points do not have them.
         states: ``"all"``, each point by its own path; or ``"full_slip"``, full slip alone, which the full model solves
@@ -116,7 +115,7 @@ def sweep(
         found = [applied(each, of_kept(outputs)) for each in kept]
     else:
         found = [_here(each, way, outputs) for each in scenes]
-    leaks = list(dict.fromkeys(note for each in found for note in leakage(each.scene)))
+    leaks = list(dict.fromkeys(str(note) for each in found for note in examine("note", each.scene)))
     notes = [f"{'First point: ' * (len(leaks) > 1)}{note}" for note in leaks[:1]]
     done = Sweep(values, tuple(found), folder, tuple(notes))
     if folder is None:
@@ -131,12 +130,12 @@ def _written(done: Sweep, folder: Path, about: dict[str, Any], place: Path) -> S
     Args:
         done: the sweep, with its notes.
         folder: of the files.
-        about: what ``sweep.json`` has beside outputs, cautions and notes.
+        about: what ``sweep.json`` has beside axes, rows, outputs, cautions and notes.
         place: folder of the points.
     """
     for name in FILES[:-1]:  # else that of an earlier sweep may stay beside this one's
         (folder / name).unlink(missing_ok=True)
-    about |= {"outputs": [each.to_dict() for each in done.outputs]}
+    about |= {"axes": list(done.axes), "rows": done.table(), "outputs": [each.to_dict() for each in done.outputs]}
     replace_json(folder / FILES[-1], about | {"cautions": done.cautions(), "notes": list(done.notes)})
     done.to_csv(folder / FILES[0])
     notes = (*done.notes, *filter(None, (_reached(done), done.save(), _older(done, place))))

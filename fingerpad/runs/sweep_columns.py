@@ -5,7 +5,6 @@ it, ``load_NAME_f_t_amplitude`` the largest amplitude in the spectrum of frictio
 frequency of that. Under a force on the whole finger there are columns of that alone.
 """
 
-import math
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -13,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from fingerpad.results import dataset
 from fingerpad.results.headline import SECTION, WHOLE
-from fingerpad.results.quantities import FINGER, FRICTION, QUANTITIES, SWEPT, Output, cell, in_table
+from fingerpad.results.quantities import FINGER, FRICTION, QUANTITIES, SWEPT, Output, in_table
 from fingerpad.results.states import STATES, LoadResult
 from fingerpad.scene import Scene
 from fingerpad.scene.keys import Key, by_name
@@ -28,46 +27,43 @@ LOAD = "load"
 """Beginning of the columns of a load over time."""
 FORCE = "full_slip_finger_f_ext"
 """Column of the force on the whole finger at full slip."""
-_IN_TIME = in_table("short")
 _ENDS = {"min": "least", "max": "largest", "mean": "mean"}
 
 
 def row(result: "Result") -> dict[str, Any]:
     """Return the values of a point in SI units by column, and its failure."""
+    newtons = {} if result.finger is None else _newtons(result.finger)
     if result.whole:
-        return (_newtons(result.finger) if result.finger is not None else {}) | {"failure": result.failure}
-    values, keys = dataset.values(result), (*SWEPT, *(each.name for each in result.outputs if "sweep" in each.tables))
+        return newtons | {"failure": result.failure}
     alone = "reached" in result.record  # full slip without a path
-    names = [f"{state}_{key}" for state in (STATES[-1:] if alone else STATES) for key in keys]
-    cells = {key: values.get(key) for name in names for key in (name, f"{name}_error") if key in values}
+    keys = (*SWEPT, *(each.name for each in result.outputs if "sweep" in each.tables))
+    names = (f"{state}_{key}" for state in (STATES[-1:] if alone else STATES) for key in keys)
+    cells = _with_errors(names, dataset.values(result))
     if alone:
         cells["full_slip_reached"] = result.record["reached"]
-    cells |= {f"{OTHER}_{key}": value for key, value in result.record.get(OTHER, {}).items()}
-    if result.finger is not None:
-        cells |= _newtons(result.finger)
+    cells |= {f"{OTHER}_{key}": value for key, value in result.record.get(OTHER, {}).items()} | newtons
     for load in result.loads:
         cells |= _in_time(load)
     return cells | {"failure": result.failure}
 
 
+def _with_errors(names: Iterable[str], values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the values that are there, each followed by its error."""
+    return {key: values[key] for name in names for key in (name, f"{name}_error") if key in values}
+
+
 def _newtons(finger: WholeFinger) -> dict[str, float]:
-    found: dict[str, float] = {}
-    for state in finger.states:
-        values, error = finger.values(state), finger.error.get(state, {})
-        own = (key for key in finger.quantities if key not in FINGER and key in values)
-        for key in (*in_table("file", FINGER), *own):
-            if key in FRICTION and state != "full_slip":
-                continue
-            name = _of_finger(state, key)
-            found |= {name: values[key]} | ({f"{name}_error": error[key]} if key in error else {})
-    return found
+    keys = (*in_table("file", FINGER), *(key for key in finger.quantities if key not in FINGER))
+    of_state = ((state, key) for state in finger.states for key in keys)
+    names = (_of_finger(state, key) for state, key in of_state if state == "full_slip" or key not in FRICTION)
+    return _with_errors(names, finger.flat())
 
 
 def _in_time(load: LoadResult) -> dict[str, float]:
     passed, found = load.over_time, dict[str, float]()
     if passed is None:
         return found
-    for key in _IN_TIME:
+    for key in in_table("short"):
         ends = load.extremes.get(key)
         if ends is not None:
             values = {"min": ends.min, "max": ends.max, "mean": passed.mean[key]}
@@ -92,19 +88,20 @@ def shown(columns: Iterable[str], whole: bool, outputs: Iterable[Output] = ()) -
         the whole finger comes first where it is known, and the middle section second.
     """
     there, outputs = set(columns), [each for each in outputs if "sweep" in each.tables]
-    if not whole:
-        summed = _of_finger("full_slip", "mu_app") in there
-        section, finger = dict(SWEPT), dict[str, Output]()
-        if summed:
-            section = {key: _of_section(each) for key, each in in_table("short").items()}
-            finger = in_table("first", FINGER) | {each.name: each.whole for each in outputs if each.sum}
-        section |= {each.name: _of_section(each) if summed and each.sum else each for each in outputs}
-        found = {_of_finger("full_slip", key): each for key, each in finger.items()}
-        return "full_slip", found | {f"full_slip_{key}": each for key, each in section.items()}
-    state = next((name for name in reversed(STATES) if _of_finger(name, "contact_area") in there), "full_slip")
-    keys = [key for key in in_table("sweep", FINGER) if state == "full_slip" or key not in FRICTION]
-    own = {_of_finger(state, each.name): each.whole for each in outputs if each.sum}
-    return state, {_of_finger(state, key): FINGER[key] for key in keys} | own
+    sums = {each.name: each.whole for each in outputs if each.sum}
+    if whole:
+        state = next((name for name in reversed(STATES) if _of_finger(name, "contact_area") in there), "full_slip")
+        finger = in_table("sweep", FINGER) | sums
+        slips = state == "full_slip"
+        return state, {_of_finger(state, key): each for key, each in finger.items() if slips or key not in FRICTION}
+    section = SWEPT | {each.name: each for each in outputs}
+    if _of_finger("full_slip", "mu_app") not in there:
+        return "full_slip", {f"full_slip_{key}": each for key, each in section.items()}
+    finger = {_of_finger("full_slip", key): each for key, each in (in_table("first", FINGER) | sums).items()}
+    section = in_table("short") | {each.name: each for each in outputs}
+    beside = {key: replace(each, words=f"{each.symbol} of section") for key, each in section.items()}
+    beside |= {each.name: each for each in outputs if not each.sum}
+    return "full_slip", finger | {f"full_slip_{key}": each for key, each in beside.items()}
 
 
 def of_finger(column: str) -> bool:
@@ -118,11 +115,6 @@ def description(columns: Iterable[str]) -> str:
     return f"{WHOLE}, and {SECTION} per metre of finger" if len(kinds) > 1 else WHOLE if True in kinds else SECTION
 
 
-def _of_section(quantity: Output) -> Output:
-    """Return a quantity of the middle section, so called beside one of the whole finger."""
-    return replace(quantity, words=f"{quantity.symbol} of section")
-
-
 def _of_finger(state: str, key: str) -> str:
     """Return the column of a quantity of the whole finger."""
     return f"{state}_finger_{key}"
@@ -134,28 +126,16 @@ def loads(columns: Iterable[str]) -> list[str]:
     return [match[1] for match in found if match]
 
 
-def in_time(name: str, columns: Iterable[str]) -> dict[str, str]:
-    """Return the columns of a load over time that are printed, in words with units.
-
-    Args:
-        name: of the load.
-        columns: of the table.
-    """
-    words, there = dict[str, str](), set(columns)
+def in_time(name: str, columns: Iterable[str]) -> dict[str, Output]:
+    """Return the columns of a load over time, by its name, that are printed of those of a table."""
+    found, there = dict[str, Output](), set(columns)
     friction = "mu_app" if f"{LOAD}_{name}_mu_app_mean" in there else "f_t"
     for key in (friction, "contact_length"):
-        quantity = QUANTITIES[key]
-        words |= {f"{key}_{end}": f"{word} {quantity.head}" for end, word in _ENDS.items()}
-    words |= {"f_t_amplitude": "amplitude of f_T (N/m)", "f_t_frequency": "at (Hz)"}
-    return {column: word for key, word in words.items() if (column := f"{LOAD}_{name}_{key}") in there}
-
-
-def _cell(column: str, value: float | None) -> str:
-    """Return a value in SI of a load's column as it is printed."""
-    if value is None or math.isnan(value):
-        return "–"
-    key = next((key for key in _IN_TIME if re.search(rf"_{key}_(min|max|mean|amplitude)$", column)), None)
-    return f"{value:.4g}" if key is None else cell(key, value)
+        of = QUANTITIES[key]
+        found |= {f"{key}_{end}": replace(of, words=f"{word} {of.symbol}") for end, word in _ENDS.items()}
+    found["f_t_amplitude"] = replace(QUANTITIES["f_t"], words="amplitude of f_T")
+    found["f_t_frequency"] = Output("frequency", "Hz", words="at", digits=1)
+    return {column: each for key, each in found.items() if (column := f"{LOAD}_{name}_{key}") in there}
 
 
 def tables(rows: Sequence[Mapping[str, Any]], axes: Mapping[str, str]) -> Iterator[tuple[str, list[list[str]]]]:
@@ -168,11 +148,10 @@ def tables(rows: Sequence[Mapping[str, Any]], axes: Mapping[str, str]) -> Iterat
     columns = list(dict.fromkeys(column for each in rows for column in each))
     for name in loads(columns):
         shown = in_time(name, columns)
-        lines = [[*axes.values(), *shown.values()]]
-        for each in rows:
-            values = [_cell(column, each.get(column)) for column in shown]
-            lines.append([*(printed(each[key]) for key in axes), *values])
-        yield name, lines
+        heads = [*axes.values(), *(of.title for of in shown.values())]
+        keys = ([printed(each[key]) for key in axes] for each in rows)
+        cells = ([of.shown(each.get(column)) for column, of in shown.items()] for each in rows)
+        yield name, [heads, *(first + line for first, line in zip(keys, cells, strict=True))]
 
 
 def printed(value: Any) -> str:

@@ -19,7 +19,6 @@ from fingerpad.results.quantities import CONDITIONS, FINGER, KNOWN, PER_LENGTH, 
 from fingerpad.results.states import STATES, WORDS
 from fingerpad.runs import post
 from fingerpad.runs.sweep_columns import described, description, head_of, of_finger, printed, row, shown, tables
-from fingerpad.scene.messages import alike
 from fingerpad.scene.reading import flat
 from fingerpad.scene.remarks import drive_in_short, other_under_a_drive
 from fingerpad.slices.errors import remarks
@@ -128,7 +127,7 @@ class Sweep:
         """
         found = dict[str, list[str]]()
         for result in self.results:
-            for form, text in {alike(text): text for text in result.cautions}.items():
+            for form, text in {each.form: each.text for each in result.cautions}.items():
                 found.setdefault(form, []).append(text)
         return [
             f"{texts[0]} ({len(texts)} of {len(self)} points{', numbers of the first' * (len(set(texts)) > 1)})"
@@ -157,13 +156,16 @@ class Sweep:
             return f"{FILE} was not written: {error.strerror or error}; all other files are complete"
         return ""
 
+    def table(self) -> list[dict[str, Any]]:
+        """Return the rows with the same columns in each, ``failure`` last; None where a point has no value."""
+        rows = self.rows()
+        columns = sorted(dict.fromkeys(key for row in rows for key in row), key="failure".__eq__)
+        return [{key: _plain(row.get(key)) for key in columns} for row in rows]
+
     def to_csv(self, path: str | Path) -> None:
         """Write the rows as a table."""
-        rows = self.rows()
-        columns = list(dict.fromkeys(key for row in rows for key in row))
-        columns.sort(key="failure".__eq__)  # last
-        text = io.StringIO()
-        table = csv.DictWriter(text, columns)
+        rows, text = self.table(), io.StringIO()
+        table = csv.DictWriter(text, list(rows[0]))
         table.writeheader()
         table.writerows(rows)
         replace(Path(path), text.getvalue())
@@ -215,6 +217,12 @@ class Sweep:
         fingers = [each.finger.parts() for each in self.results if each.finger is not None and True in shown]
         sections = [each.parts() for each in self.results if False in shown]
         return [plus_minus_of(itertools.chain(*fingers, *sections))] if shown else []
+
+
+def _plain(value: Any) -> Any:
+    """Return a number, a switch or a text of Python; anything else as text."""
+    value = value.item() if isinstance(value, np.generic) else value
+    return value if value is None or isinstance(value, bool | int | float | str) else str(value)
 
 
 def _aligned(table: Sequence[Sequence[str]]) -> list[str]:

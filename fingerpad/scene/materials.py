@@ -15,7 +15,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, ValidationError, ValidationInfo
 
 from fingerpad import launcher
-from fingerpad.scene.electric import Electric
+from fingerpad.scene.drive import Electric
 from fingerpad.scene.law_keys import (
     Kind,
     LawKey,

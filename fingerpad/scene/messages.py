@@ -7,14 +7,15 @@ control characters are written out.
 import re
 import unicodedata
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from difflib import SequenceMatcher
 from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
 
-_MAX_MESSAGE = 1000  # characters of a message, which no sentence has
-_MAX_VALUE = 60  # of a value that is quoted
-_MAX_KEY = 40  # of a key
+from geometry.units import NO_QUANTITY, OUT_OF_RANGE, to_si
+
+_MAX_MESSAGE, _MAX_VALUE, _MAX_KEY = 1000, 60, 40  # characters of a message, of a value that is quoted, of a key
 
 LAW = "law"  # kind of the errors of a law, whose context has the text and the place
 NUMBER, WAVE, NAME, TABLE = "a number", "a waveform", "a name", "a table"
@@ -23,7 +24,7 @@ NUMBER, WAVE, NAME, TABLE = "a number", "a waveform", "a name", "a table"
 _MAX_LIST = 150  # characters of a list of keys
 _MIN_LIKENESS = 0.6  # likeness, from 0 to 1, at which a key of the same table may have been meant,
 _ELSEWHERE = 0.85  # or one of another table
-_TYPES = {
+_ALLOWED = {
     "float_type": "a number",
     "int_type": "a whole number",
     "int_from_float": "a whole number",
@@ -33,13 +34,18 @@ _TYPES = {
     "model_type": "a table of keys",
     "model_attributes_type": "a table of keys",
     "finite_number": "a finite number",
+    "greater_than": "greater than {gt}",
+    "greater_than_equal": "at least {ge}",
+    "less_than": "less than {lt}",
+    "less_than_equal": "at most {le}",
+    "literal_error": "{expected}",
 }
-_BOUNDS = {
-    "greater_than": ("gt", "greater than"),
-    "greater_than_equal": ("ge", "at least"),
-    "less_than": ("lt", "less than"),
-    "less_than_equal": ("le", "at most"),
+_SENTENCES = {kind: f"{{key}} is {{given}}; it must be {words}" for kind, words in _ALLOWED.items()} | {
+    "missing": "{key} is missing; it must be given",
+    "too_short": "{key} is empty; it must have at least one entry",
+    "too_long": "{key} has too many entries; it must have at most {max_length}",
 }
+"""By pydantic's kind of an error, with the names of its context."""
 
 
 class SceneError(ValueError):
@@ -49,23 +55,8 @@ class SceneError(ValueError):
         super().__init__(clip(message, _MAX_MESSAGE))
 
 
-def alike(caution: str) -> str:
-    """Return a caution without its numbers, which differ from state to state."""
-    return re.sub(r"[-+]?\d[\d.]*(e[-+]?\d+)?(, (?=\d))?", "", caution)
-
-
 def refuse_type(name: str, value: object, allowed: Any, words: str) -> None:
-    """Refuse an argument that is of none of the types allowed.
-
-    Args:
-        name: of the argument.
-        value: of it.
-        allowed: a type, or a union of types.
-        words: what is allowed.
-
-    Raises:
-        SceneError: it is of another type.
-    """
+    """Raise :class:`SceneError` where an argument is of none of the types allowed, in words; a type or a union."""
     if not isinstance(value, allowed):
         raise SceneError(f"{name} is of the type {type(value).__name__}; it must be {words}")
 
@@ -129,15 +120,7 @@ def qualify(message: str, prefix: str, names: Iterable[str]) -> str:
 
 # -- errors --------------------------------------------------------------------------------------------
 def first_error(error: ValidationError, root: type[BaseModel], keys: Iterable[str]) -> str:
-    """Return the first error of a validation of ``root`` as a message.
-
-    Args:
-        error: of the validation.
-        root: model.
-        keys: names of all its keys, of which one may have been meant by an unknown key.
-    """
-    from geometry.units import NO_QUANTITY, OUT_OF_RANGE
-
+    """Return the first error of a validation of the model ``root`` as a message; ``keys`` are all that it has."""
     first = error.errors(include_url=False)[0]
     kind, context = first["type"], first.get("ctx", {})
     loc = tuple(part for part in (*first["loc"], *context.get("at", ())) if part not in (NUMBER, WAVE, NAME, TABLE))
@@ -156,39 +139,20 @@ def first_error(error: ValidationError, root: type[BaseModel], keys: Iterable[st
         of = f" with the law {context['of']}" if "of" in context else ""
         own = context.get("keys") or tuple(getattr(_model_at(root, loc[:-1]), "model_fields", ()))
         return f"{key} is not a key of {key_of(loc[:-1]) or 'a scene'}{of}; {_instead(loc, own, keys)}"
-    if kind == "missing":
-        return f"{key} is missing; it must be given"
     if kind == "value_error":
         model = _model_at(root, loc)
         if model is None:
             return f"{key} is {given}; {context['error']}"
         return qualify(str(context["error"]), f"{key}." if key else "", model.model_fields)
-    if kind in _BOUNDS:
-        name, words = _BOUNDS[kind]
-        return f"{key} is {given}; it must be {words} {show(context[name])}"
-    if kind == "literal_error":
-        return f"{key} is {given}; it must be {context['expected']}"
-    if kind == "too_short":
-        return f"{key} is empty; it must have at least one entry"
-    if kind == "too_long":
-        return f"{key} has too many entries; it must have at most {context['max_length']}"
-    if kind == NO_QUANTITY and key == "f_ext" and _newtons(value):
-        return f"{key} is {given}; it must be in N/m; a force on the whole finger is the key force"
+    if kind == NO_QUANTITY and key == "f_ext":
+        with suppress(ValueError):
+            to_si(value, "N")
+            return f"{key} is {given}; it must be in N/m; a force on the whole finger is the key force"
     if kind in ("int_type", "int_from_float") and isinstance(value, float):
         given = repr(value)  # 5.0, which show writes as 5
-    if kind in _TYPES:
-        return f"{key or 'a scene'} is {given}; it must be {_TYPES[kind]}"
-    return f"{key or 'a scene'} is {given}; {first['msg']}"
-
-
-def _newtons(text: str) -> bool:
-    from geometry.units import to_si
-
-    try:
-        to_si(text, "N")
-    except ValueError:
-        return False
-    return True
+    numbers = {name: show(each) for name, each in context.items() if isinstance(each, int | float)}
+    sentence = _SENTENCES.get(kind, "{key} is {given}; {msg}")
+    return sentence.format(**first | context | numbers | {"key": key or "a scene", "given": given})
 
 
 def _default(root: type[BaseModel], loc: Iterable[int | str]) -> float | None:
@@ -218,13 +182,7 @@ def _models_in(annotation: Any) -> Iterator[type[BaseModel]]:
 
 # -- unknown keys --------------------------------------------------------------------------------------
 def _instead(loc: tuple[int | str, ...], own: Sequence[str], every: Iterable[str]) -> str:
-    """Return what may have been meant by an unknown key: the nearest key of all tables, or those of its own.
-
-    Args:
-        loc: place of the key.
-        own: keys that its table has.
-        every: names of the keys of all tables.
-    """
+    """Return what may have been meant by the key at ``loc``: the nearest of all tables' keys, or those of its own."""
     table, name = key_of(loc[:-1]), str(loc[-1])
     wanted = clip(name, _MAX_KEY).lower().replace("-", "_")
     keys = [(table, key, _MIN_LIKENESS) for key in own]

@@ -20,7 +20,7 @@ from variational.coefficients import Law
 from variational.roughness.closure import Closure
 
 DEFAULT_MODEL = "full"
-"""Model of a run whose files name none, by :data:`fingerpad.reduced.registry.MODELS`."""
+"""Model of a run whose files name none, by :data:`fingerpad.runs.solve.MODELS`."""
 _MAX_DEPTH = 8  # of tables in lists in tables; a scene has 3
 _DEPTH = f"a scene has at most {_MAX_DEPTH} inside one another"
 _MAX_BITS = 1000  # of a whole number; floating point has 1024

@@ -6,7 +6,7 @@ A voltage attracts as over lossless insulators, Eq. 3 of the paper. Skin conduct
 an alternating one, so that it has a note alone. The mean of a waveform is a constant voltage, and has a caution.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import fields
 from typing import TYPE_CHECKING, Any
 
@@ -18,8 +18,8 @@ from fingerpad.scene.law_keys import UnresolvedLaw
 from fingerpad.scene.materials import LAYERS
 from fingerpad.scene.messages import clip, show
 from fingerpad.scene.viscosity import elastic, viscous_layers
-from fingerpad.scene.waveform import Waveform
 from variational.attraction.circuit import GapCircuit
+from variational.caution import Caution
 from variational.contact.friction import Coulomb, Friction
 
 if TYPE_CHECKING:
@@ -89,21 +89,38 @@ def _shown(value: Any) -> str:
 
 
 # -- notes -----------------------------------------------------------------------------------------------
-def leakage(scene: "Scene") -> list[str]:
-    """Return the notes on drives and on a constant voltage; none at 0 V.
+def _drives(scene: "Scene") -> list[Caution]:
+    """Return of each drive how large it is by every measure, the circuit, and the constant voltage it counts as."""
+    found = ((name, drive_of(w, scene.electric, scene.geometry.sc_thickness)) for name, w in scene.drives().items())
+    return [
+        Caution(
+            "drive",
+            f"Drive {name}: {drive.wave}, "
+            f"{'without losses (Eq. 3)' if drive.circuit.lossless else circuit_in_words(drive.circuit)}. "
+            f"{drive.measures()}, as a constant {drive.reference:.4g} V does without losses.",
+            drive.reference,
+        )
+        for name, drive in found
+    ]
 
-    Of a drive: how large it is by every measure, the circuit, and the constant voltage that it counts as. Of a constant
-    voltage: that it leaks away, or what a circuit that leaks leaves of it. Without losses a caution on an offset
-    stands in its place.
+
+def _constant_voltage(scene: "Scene") -> list[Caution]:
+    """Return that a constant voltage leaks away, or what a circuit that leaks leaves of it; none at 0 V.
+
+    Without losses a caution on an offset stands in its place.
     """
     circuit = scene.electric.circuit(scene.geometry.sc_thickness)
-    found = [_drive_in_words(name, wave, scene) for name, wave in scene.drives().items()]
-    constant = scene.drive is None and any(load.level for load in scene.loads())
-    if constant and circuit.lossless:
-        found += [] if _offset(scene) else [LEAKAGE]
-    elif constant:
-        found.append(_remains_in_words(scene, circuit))
-    return found
+    if (
+        scene.drive is not None
+        or not any(load.level for load in scene.loads())
+        or (circuit.lossless and _offset(scene))
+    ):
+        return []
+    return [Caution("leakage", LEAKAGE if circuit.lossless else _remains_in_words(scene, circuit))]
+
+
+NOTES = (_drives, _constant_voltage)
+"""Each takes a scene and returns the notes on its voltage."""
 
 
 def drive_in_short(scenes: Iterable["Scene"]) -> str:
@@ -123,15 +140,6 @@ def other_under_a_drive(scenes: Iterable["Scene"]) -> list[str]:
     constant = (scene for scene in scenes if scene.drive is None and scene.volts)
     loses = any(not scene.electric.circuit(scene.geometry.sc_thickness).lossless for scene in constant)
     return [_UNDER_A_DRIVE] if loses else []
-
-
-def _drive_in_words(name: str, wave: Waveform, scene: "Scene") -> str:
-    drive = drive_of(wave, scene.electric, scene.geometry.sc_thickness)
-    losses = "without losses (Eq. 3)" if drive.circuit.lossless else circuit_in_words(drive.circuit)
-    return (
-        f"Drive {name}: {wave}, {losses}. {drive.measures()}, as a constant {drive.reference:.4g} V does without "
-        "losses."
-    )
 
 
 def circuit_in_words(circuit: GapCircuit) -> str:
@@ -179,47 +187,41 @@ def _value(scene: "Scene", key: str) -> Any:
 
 
 # -- cautions ------------------------------------------------------------------------------------------
-def remarks(scene: "Scene") -> list[str]:
-    """Return the cautions on a scene, by every check of :data:`CHECKS`."""
-    return [text for check in CHECKS for text in check(scene)]
-
-
-def _offset(scene: "Scene") -> list[str]:
+def _offset(scene: "Scene") -> list[Caution]:
     """Return a caution on the waveform with the largest mean voltage; none where no mean reaches 1 % of its peak."""
     name, wave = max(scene.drives().items(), key=lambda each: abs(each[1].mean), default=("", None))
     if wave is None or abs(wave.mean) < _MEAN * wave.peak or scene.electric.leak != "none":
         return []
-    return [
+    text = (
         f"the drive {name} has a mean of {wave.mean:.4g} V, which leaks away in a real finger; here it "
         "attracts all the time, without leakage (Eq. 3), so that the attraction is too large"
-    ]
+    )
+    return [Caution("offset", text, wave.mean)]
 
 
-def _nothing_relaxes(scene: "Scene") -> list[str]:
-    """Return a caution on viscous layers and on friction with a memory where no load takes time."""
-    if any(load.takes_time for load in scene.loads()):
-        return []
-    timeless, remedy = "no load takes time, so that", "give loads of a history a duration or a speed"
-    found = [
-        f"{layer}.viscosity is given and {timeless} nothing will relax and viscous layers have their modulus at once; "
-        f"{remedy}"
-        for layer in viscous_layers(scene.materials)[:1]
-    ]
-    law = scene.friction
-    if isinstance(law, Friction) and law.memory is not None:
-        found.append(f"friction is {type(law).__name__} and {timeless} friction stays as it begins; {remedy}")
-    return found
+def _nothing_relaxes(scene: "Scene") -> Iterator[Caution]:
+    """Yield a caution on viscous layers and on friction with a memory where no load takes time."""
+    in_time = any(load.takes_time for load in scene.loads())
+    for layer in () if in_time else viscous_layers(scene.materials)[:1]:
+        text = (
+            f"{layer}.viscosity is given and no load takes time, so that nothing will relax and viscous layers have "
+            "their modulus at once; give loads of a history a duration or a speed"
+        )
+        yield Caution("nothing_relaxes", text)
+    if isinstance(scene.friction, Friction):
+        yield from scene.friction.cautions(in_time)
 
 
-def _name_without_effect(scene: "Scene") -> list[str]:
+def _name_without_effect(scene: "Scene") -> list[Caution]:
     """Return a caution where all keys of a finger's name are given otherwise."""
     values = FINGERS[scene.finger].values
     if not values or len(_changed(scene)) < len(values):
         return []
-    return [f"finger is {show(scene.finger)} and all of its keys are given with other values: the name has no effect"]
+    words = f"finger is {show(scene.finger)} and all of its keys are given with other values: the name has no effect"
+    return [Caution("finger_name", words)]
 
 
-def _roughness(scene: "Scene") -> list[str]:
+def _roughness(scene: "Scene") -> list[Caution]:
     """Return the cautions on the waves of a roughness; none of a closure of one's own, or of a mesh of a file."""
     if scene.geometry.file is not None or not getattr(scene.roughness, "shared", ()):
         return []
@@ -231,7 +233,7 @@ CHECKS = (_offset, _nothing_relaxes, _name_without_effect, _roughness)
 """Each takes a scene and returns its cautions."""
 
 
-def on_waves(wavelength: float, longest: float, ridge_wavelength: float) -> list[str]:
+def on_waves(wavelength: float, longest: float, ridge_wavelength: float) -> list[Caution]:
     """Return cautions on a roughness that ridges may be part of, and on one without the paper's largest waves.
 
     *Assumption*: the first holds above half of the ridges' distance, the second below half of 100 µm. h_rms of a
@@ -244,14 +246,16 @@ def on_waves(wavelength: float, longest: float, ridge_wavelength: float) -> list
     """
     found = []
     if wavelength > ridge_wavelength / 2:
-        found.append(
+        text = (
             f"roughness.wavelength is {wavelength:.3g} m, above half of geometry.ridge_wavelength, "
             f"{ridge_wavelength:.3g} m: ridges or the finger's form may count as roughness; remove both from the "
             "height map, or take a smaller map on one ridge"
         )
+        found.append(Caution("long_waves", text, wavelength))
     if longest < _LONGEST / 2:
-        found.append(
+        text = (
             f"roughness ends at waves of {longest:.3g} m, and skin has waves up to {_LONGEST:.3g} m: waves longer than "
             "a height map are missing in its h_rms, which depends on the size of the map; take a larger map"
         )
+        found.append(Caution("short_waves", text, longest))
     return found

@@ -14,8 +14,7 @@ from pydantic import BeforeValidator, Field, PrivateAttr, ValidationError, model
 
 from fingerpad import notebook
 from fingerpad.scene.changes import DEFAULT_HISTORY, changed, preset_keys, with_presets, without
-from fingerpad.scene.drive import Drive, drive_of, refuse_drives
-from fingerpad.scene.electric import Electric
+from fingerpad.scene.drive import Drive, Electric, drive_of, refuse_drives
 from fingerpad.scene.fingers import ADULT, FingerName
 from fingerpad.scene.keys import every
 from fingerpad.scene.law_code import digest, folder_of, imported

@@ -15,7 +15,7 @@ that w should stay near 1.
 
 A slice touches where h > 0 and follows its trace from there, the branch of a finger that comes down: pressed, charged,
 or at full slip, which does not depend on the path of loads as long as the same ridges touch
-(``tests/test_full_slip_direct.py``). A charged slice that is still held below h = 0 after it was pressed deeper is left
+(``tests/test_full_slip.py``). A charged slice that is still held below h = 0 after it was pressed deeper is left
 out. A ridge that came down in the press may stay down in sliding: then the trace, on which it comes in sliding, has
 less friction (``docs/newtons.md``). Left out are shear between slices, the end cap of the finger, and the flow of soft
 tissue along the axis. Fingers in three dimensions are the measure of that: :mod:`fingerpad.slices.errors` has what is

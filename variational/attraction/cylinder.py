@@ -19,12 +19,11 @@ surfaces are under that pressure (Forsbach et al. 2023, Eqs. 3, 4 and 13):
 
 .. math:: 2 a p_c = f + 2 \sigma c, \qquad d_{eq} = d_{eq}(p_c).
 
-Without voltage this is Hertz's law. There are two ways to close the equations: a is given, and f is borne over it; or
-f is given, and a follows from the second equation. E* may grow with p_c, as in a ridge that friction shears. The gap
-at c grows with m then, which leaves one m at each p_c, and
-one equation in p_c. It can have several roots: that of the highest pressure is
-the branch in contact, on which the loop over the scales contracts; others are unstable, or states of a ridge that has
-not jumped on the screen yet. Where the highest root vanishes the ridge is past its pull-off fold and there is none.
+Without voltage this is Hertz's law. The force f is given, and a follows from the second equation. E* may grow with p_c,
+as in a ridge that friction shears. The gap at c grows with m then, which leaves one m at each p_c, and one equation in
+p_c. It can have several roots: that of the highest pressure is the branch in contact, on which the loop over the scales
+contracts; others are unstable, or states of a ridge that has not jumped on the screen yet. Where the highest root
+vanishes the ridge is past its pull-off fold and there is none.
 """
 
 from collections.abc import Callable
@@ -81,11 +80,9 @@ class _Loads:
     """External force per length (N/m)."""
     modulus: Array
     """Of each ridge (Pa)."""
-    half: float | None
-    """Half-width a (m) if it is given."""
 
     def __getitem__(self, chosen: NDArray[np.intp]) -> "_Loads":
-        return _Loads(self.f[chosen], self.modulus[chosen], self.half)
+        return _Loads(self.f[chosen], self.modulus[chosen])
 
 
 @dataclass(frozen=True)
@@ -114,21 +111,41 @@ class Cylinder:
             NoEquilibriumError: no branch in contact, or the attraction is beyond what a finger can bear, under the
                 first force that is refused.
         """
-        return self._states(np.asarray(f, dtype=float), voltage)
+        f = np.asarray(f, dtype=float)
+        if not np.all(f > 0):
+            raise NoEquilibriumError(f"the force on a ridge is {f[~(f > 0)][0]:g} N/m; it must be greater than 0")
+        loads = _Loads(f, np.broadcast_to(np.asarray(self.modulus, dtype=float), f.shape))
+        count, every = len(f), len(_PRESSURES)
+        grid = loads[np.tile(np.arange(count), every)]
+        beyond, values = (each.reshape(every, count) for each in self._excess(_PRESSURES, voltage, grid))
+        crossed = np.sign(values[:-1]) != np.sign(values[1:])
+        none = ~crossed.any(axis=0) | (values[-1] <= 0)
+        if none.any():
+            raise NoEquilibriumError(
+                f"no contact pressure from {_PRESSURES[0]:g} to {_PRESSURES[-1]:g} Pa bears {f[none][0]:g} N/m on a "
+                f"ridge at {'a drive' if callable(voltage) else f'{voltage:g} V'}; try another force or length"
+            )
+        k, load = np.nonzero(crossed)
+        crossing, near = loads[load], beyond[k, load]
 
-    def over_length(self, length: float, f: float, voltage: Voltage) -> RidgeState:
-        """Return the state in which a contact of given length (m) bears an external force; see :meth:`under_loads`.
+        def excess(p_c: Array) -> Array:
+            nonlocal near
+            near, found = self._excess(p_c, voltage, crossing, near)
+            return found
 
-        Raises:
-            NoEquilibriumError: no branch in contact.
-        """
-        return self._states(np.array([f], dtype=float), voltage, length / 2)[0]
+        roots = _roots(excess, (_PRESSURES[k], values[k, load]), (_PRESSURES[k + 1], values[k + 1, load]))
+        found = [np.flatnonzero(load == n) for n in range(count)]  # places of growing pressure
+        last = np.array([places[-1] for places in found])
+        p_c = roots[last]
+        a, edge, sigma, d_eq = self._at(p_c, voltage, loads, near[last])
+        attraction = 2 * sigma * a * (1 + edge)
+        columns: Any = np.array([2 * a, 2 * a * (1 + edge), p_c, d_eq, f + attraction, attraction]).T.tolist()
+        others = (tuple(map(float, roots[places[:-1]])) for places in found)
+        return [RidgeState(*(*each, more)) for each, more in zip(columns, others, strict=True)]
 
     # -- the gap at c ----------------------------------------------------------------------------------
     def _half_width(self, loads: _Loads, beyond: Array, sigma: Array) -> tuple[Array, Array]:
-        """Return a (m) at m - 1, of the force or as given, and its derivative with respect to m."""
-        if loads.half is not None:
-            return np.full_like(beyond, loads.half), np.zeros_like(beyond)
+        """Return a (m) at m - 1, and its derivative with respect to m."""
         stiffness = np.pi * loads.modulus / (2 * self.radius)
         root = np.sqrt(beyond * (2 + beyond))
         pull = 2 * sigma * root
@@ -178,48 +195,12 @@ class Cylinder:
         if none.any():
             k = int(np.argmax(none))
             raise NoEquilibriumError(
-                f"a contact of {2 * loads.half:.3g} m is too short for an attraction that reaches {reach[k]:.3g} m; "
-                "try a longer one"
-                if loads.half is not None
-                else f"no contact bears {loads.f[k]:g} N/m under an attraction of {sigma[k]:.3g} Pa; "
+                f"no contact bears {loads.f[k]:g} N/m under an attraction of {sigma[k]:.3g} Pa; "
                 "try a smaller voltage or another force"
             )
         return np.exp(y)
 
     # -- the microscale --------------------------------------------------------------------------------
-    def _states(self, f: Array, voltage: Voltage, half: float | None = None) -> list[RidgeState]:
-        """Return the branches in contact; ``half`` is a (m) where it is given."""
-        if not np.all(f > 0):
-            raise NoEquilibriumError(f"the force on a ridge is {f[~(f > 0)][0]:g} N/m; it must be greater than 0")
-        loads = _Loads(f, np.broadcast_to(np.asarray(self.modulus, dtype=float), f.shape), half)
-        count, every = len(f), len(_PRESSURES)
-        grid = loads[np.tile(np.arange(count), every)]
-        beyond, values = (each.reshape(every, count) for each in self._excess(_PRESSURES, voltage, grid))
-        crossed = np.sign(values[:-1]) != np.sign(values[1:])
-        none = ~crossed.any(axis=0) | (values[-1] <= 0)
-        if none.any():
-            raise NoEquilibriumError(
-                f"no contact pressure from {_PRESSURES[0]:g} to {_PRESSURES[-1]:g} Pa bears {f[none][0]:g} N/m on a "
-                f"ridge at {'a drive' if callable(voltage) else f'{voltage:g} V'}; try another force or length"
-            )
-        k, load = np.nonzero(crossed)
-        crossing, near = loads[load], beyond[k, load]
-
-        def excess(p_c: Array) -> Array:
-            nonlocal near
-            near, found = self._excess(p_c, voltage, crossing, near)
-            return found
-
-        roots = _roots(excess, (_PRESSURES[k], values[k, load]), (_PRESSURES[k + 1], values[k + 1, load]))
-        found = [np.flatnonzero(load == n) for n in range(count)]  # places of growing pressure
-        last = np.array([places[-1] for places in found])
-        p_c = roots[last]
-        a, edge, sigma, d_eq = self._at(p_c, voltage, loads, near[last])
-        attraction = 2 * sigma * a * (1 + edge)
-        columns: Any = np.array([2 * a, 2 * a * (1 + edge), p_c, d_eq, f + attraction, attraction]).T.tolist()
-        others = (tuple(map(float, roots[places[:-1]])) for places in found)
-        return [RidgeState(*(*each, more)) for each, more in zip(columns, others, strict=True)]
-
     def _at(
         self, p_c: Array, voltage: Voltage, loads: _Loads, near: Array | None = None
     ) -> tuple[Array, Array, Array, Array]:

@@ -20,6 +20,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from variational.caution import Caution
 from variational.coefficients import parameter
 from variational.contact.formulation import Contact, Formulation, History, Skin, Springs, SurfaceState
 from variational.contact.friction import CONE_ROUNDOFF, Friction
@@ -38,11 +39,15 @@ class AugmentedLagrangian(Formulation):
     three-hundredth of the smallest d_eq. Range: from roundoff to the size of the air gap."""
 
     symmetric_start: ClassVar[bool] = False  # its multipliers, corrected within a step, are not put on the whole
-    caution: ClassVar[str] = (
-        "contact by a method for comparison, which takes several times the factorisations of the penalty and may miss "
-        "equilibria that it finds"
-    )
     less_penetration: ClassVar[str] = "a smaller tolerance of the contact reduces it"
+
+    def cautions(self) -> list[Caution]:
+        """Return that the method is for comparison."""
+        text = (
+            "contact by a method for comparison, which takes several times the factorisations of the penalty and may "
+            "miss equilibria that it finds"
+        )
+        return [Caution("contact_compared", text)]
 
     def springs(self, skin: Skin) -> Springs:
         """Return springs that the multiplier preloads."""

@@ -31,6 +31,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from variational.caution import Caution
 from variational.coefficients import LawError, Named, refuse_not_positive, said
 from variational.contact.friction import Friction
 
@@ -202,8 +203,6 @@ class Formulation(Named, ABC):
     """Error of the contact's conditions (m) that is left."""
     symmetric_start: ClassVar[bool] = True
     """Whether a state that was reached on one half of a symmetric body can be put on the whole."""
-    caution: ClassVar[str] = ""
-    """What a check says of the formulation before a run; empty for nothing."""
     less_penetration: ClassVar[str] = "a stiffer contact reduces it"
     """Remedy against skin that is too deep in the screen."""
     unloaded_energy: ClassVar[str] = ""
@@ -216,6 +215,10 @@ class Formulation(Named, ABC):
             ValueError: one that is not greater than 0 and finite.
         """
         refuse_not_positive(self)
+
+    def cautions(self) -> list[Caution]:
+        """Return what a check of a scene prints of the formulation before a run."""
+        return []
 
     @abstractmethod
     def springs(self, skin: Skin) -> Springs:

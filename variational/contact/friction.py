@@ -28,6 +28,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from variational.caution import Caution
 from variational.coefficients import Law, parameter, said
 
 Array = NDArray[np.float64]
@@ -97,6 +98,20 @@ class Friction(Law, ABC):
         The model "cylinders" gives the current length, while the full model's :meth:`limit` is per reference area.
         """
         return float(self.limit(force / length) * length) if length > 0 else 0.0
+
+    def cautions(self, in_time: bool) -> list[Caution]:
+        """Return that a memory has no effect where no load takes time.
+
+        Args:
+            in_time: whether a load takes time.
+        """
+        if in_time or self.memory is None:
+            return []
+        text = (
+            f"friction is {type(self).__name__} and no load takes time, so that friction stays as it begins; "
+            "give loads of a history a duration or a speed"
+        )
+        return [Caution("nothing_ages", text)]
 
     def with_constants(self, constant: Callable[[float], Any]) -> Self:
         """Return the law with what ``constant`` makes of each of its numbers."""

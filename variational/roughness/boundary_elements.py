@@ -10,7 +10,7 @@ map has its own.
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from variational.roughness import tables
+from variational.roughness import gaps
 from variational.roughness.closure import Progress
 from variational.roughness.gaps import GapTable
 from variational.roughness.tabulated import TabulatedClosure
@@ -36,13 +36,13 @@ class BoundaryElements(TabulatedClosure):
             ValueError: there is none; in one sentence.
         """
         if self.surface:
-            return tables.of_map(self.surface)
+            return gaps.of_map(self.surface)
         try:
-            return tables.of_spectrum(self.hurst, self.wavelength / self.shortest_wave)
+            return gaps.of_spectrum(self.hurst, self.wavelength / self.shortest_wave)
         except ValueError as error:
             if str(error).startswith("hurst"):
                 raise ValueError(f"{error}, and Persson has no such limits") from None
-            ratios = tables.ratios(self.hurst)
+            ratios = gaps.ratios(self.hurst)
             low, high = self.wavelength / ratios[-1], self.wavelength / ratios[0]
             raise ValueError(
                 f"shortest_wave is {self.shortest_wave:g} m; {error}, so take {low:.4g} to {high:.4g} m"
@@ -59,7 +59,7 @@ class BoundaryElements(TabulatedClosure):
         Raises:
             ValueError: a map that is flat or has too few pixels or pixels that are not square; in one sentence.
         """
-        from variational.roughness.contacts import keep  # solves contacts
+        from variational.roughness.halfspace import keep  # solves contacts
 
         name, h_rms, wavelength = keep(measured.detrended("curvature"), progress)
         return {"h_rms": h_rms, "wavelength": wavelength, "surface": name}

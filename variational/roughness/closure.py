@@ -11,17 +11,23 @@ Your own closure is one class, here a gap that no pressure changes::
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections import Counter, defaultdict
+from collections.abc import Callable, Sequence
 from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from variational.caution import Caution
 
 Array = NDArray[np.float64]
 Progress = Callable[[int, int], None]
 """Called with the number of contacts that are solved and of all."""
 PAST_THE_FOLD = "past the fold"
 """State of a ridge whose attraction grows faster than its contact pressure: alone, it comes down or lets go at once."""
+BALANCED = 0.1
+"""Part of the pressure in contact from which its attraction is overestimated by some 8 %."""
+_SHARE = 0.1  # of the contact force, from which ridges outside of a closure's range are mentioned
 _PRESSURES = np.array([0.0, 1.0, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7])  # Pa, at which a closure is examined
 
 
@@ -78,6 +84,35 @@ class Closure(ABC):
     def sticking_voltage(self) -> float | None:
         """Return the voltage (V) from which a flat ridge adheres without a load; None where it is not known."""
         return None
+
+    def cautions(self, points: Sequence[tuple[ArrayLike, ArrayLike, float]], noun: str = "states") -> list[Caution]:
+        """Return in how many points ridges under a tenth of the contact force or more are outside of the range.
+
+        Also in how many attraction deforms the asperities (:meth:`balanced`), which the closure does not have.
+
+        Args:
+            points: pressure (Pa) and contact force of each ridge, and the voltage (V).
+            noun: what the points are.
+        """
+        counts = Counter[str]()
+        for p_c, force, voltage in points:
+            borne = defaultdict[str, float](float)
+            for pressure, share in zip(np.atleast_1d(p_c), np.atleast_1d(force) / np.sum(force), strict=True):
+                borne[self.state(float(pressure), voltage)] += float(share)
+            counts.update(place for place, share in borne.items() if place and share >= _SHARE)
+        of, name = f"of {len(points)} {noun} the closure", type(self).__name__
+        words = "is out of its range: the mean pressure of ridges is"
+        found = [Caution("closure_range", f"in {n} {of} {words} {place}", n) for place, n in counts.items()]
+        shares = [float(self.balanced(p_c, voltage).max(initial=0.0)) for p_c, _, voltage in points]
+        if many := sum(share >= BALANCED for share in shares):
+            text = (
+                f"in {many} {of} {name} overestimates the attraction, which deforms the asperities: it balances up to "
+                f"{100 * min(max(shares), 1.0):.0f} % of the pressure in contact (overestimated by 11 % at a share of "
+                "14 %, by 85 % at 50 %: docs/microscale.md); the values are upper bounds, and "
+                "roughness.field_in_contact=false gives lower ones"
+            )
+            found.append(Caution("attraction_deforms", text, max(shares)))
+        return found
 
 
 def air_gaps(closure: Closure, p_c: ArrayLike) -> Array:

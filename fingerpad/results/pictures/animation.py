@@ -213,7 +213,8 @@ def _drawn(scene: _Scene, frame: _Frame, figure: Figure) -> Image.Image:
     xy, skin = scene.motion.between(frame.state, frame.part)
     with style.look():
         whole, forces, near, stress = figure.axes
-        style.clear(figure.axes)
+        for ax in figure.axes:
+            ax.clear()
         figure.suptitle(_words(scene.states[frame.state]))
         _draw_finger(whole, scene, _MM * xy, None)
         _draw_finger(near, scene, _MM * xy, scene.half)

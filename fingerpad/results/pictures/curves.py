@@ -1,9 +1,9 @@
-"""Pictures of curves: stresses and gaps along the skin near the screen; friction and contact over sliding or time."""
+"""Pictures of curves: along the skin near the screen, over sliding, over time and over a period; and of spikes."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from fingerpad.results.pictures import style
+from fingerpad.results.quantities import STEPS
 from fingerpad.results.states import called
 from variational.state import ContactState
 
@@ -23,6 +24,9 @@ _NOTHING = 1e-9  # of the contact force: an external force below is roundoff
 _LEAST_AMPLITUDE = 1e-3  # of the largest one, from which components are drawn
 _COMPONENTS = 60  # at most
 _COARSE = 0.1  # of the peak: deeper saw teeth are noted
+_PANEL, _ROW, _DENSITIES = 0.6, 0.09, 1.8  # in: of a panel of spikes, of a unit in it, and of energy densities
+_MARKED = 4  # ridges whose density has a colour
+_NAMED = 0.06  # of the length of the run, from which a load has its name
 
 
 @dataclass(frozen=True)
@@ -156,6 +160,13 @@ def _draw_gaps(ax: Axes, s: SurfaceProfile, largest: float) -> None:
     ax.set_ylabel("gap (µm)")
 
 
+def _draw(ax: Axes, x: Array, states: Sequence[ContactState], key: str, colour: str = style.BLACK) -> None:
+    """Draw a quantity of states, with its words, symbol and unit on the left."""
+    of = STEPS[key]
+    ax.plot(x, [of.scale * getattr(state, key) for state in states], "o-", ms=3.5, color=colour, label=of.words)
+    ax.set_ylabel(f"{of.words.removesuffix(of.symbol)}\n{of.head}")
+
+
 def history(
     path: Path | str | None,
     states: Sequence[ContactState],
@@ -172,27 +183,19 @@ def history(
         mu_0: friction coefficient, drawn as the limit without attraction.
         named: states by name; those with a known error are drawn with error bars.
     """
-
-    def column(name: str) -> Array:
-        return np.array([getattr(state, name) for state in states], dtype=float)
-
-    x, f_t = _MM * column("bone_x"), column("f_t")
+    x = np.array([_MM * state.bone_x for state in states])
     with style.look():
         figure = style.figure(7.25, title)
         panels = style.column(figure, [8, 8, 5])
         force, length, ridges = panels
-        force.plot(x, f_t, "o-", ms=3.5, color=style.BLACK, label="friction force f_T")
-        force.set_ylabel("friction force f_T (N/m)")
-        _draw_apparent(force, x, column("f_ext"), column("mu_app"), mu_0)
-        length.plot(x, _MM * column("contact_length"), "o-", ms=3.5, color=style.BLACK, label="contact length L_R")
-        length.set_ylabel("contact length L_R (mm)")
-        _draw_errors(force, named or {}, "f_t", 1.0)
-        _draw_errors(length, named or {}, "contact_length", _MM)
-        ridges.step(x, column("ridges_in_contact"), where="post", color=style.BLACK)
-        ridges.set_ylabel("ridges in\ncontact (number)")
+        for ax, key in ((force, "f_t"), (length, "contact_length")):
+            _draw(ax, x, states, key)
+            _draw_errors(ax, named or {}, key)
+        _draw_apparent(force, x, states, mu_0)
+        ridges.step(x, [state.ridges_in_contact for state in states], where="post", color=style.BLACK)
+        ridges.set(ylabel="ridges in\ncontact (number)", xlabel="sideways displacement of the bone (mm)")
         ridges.margins(y=0.15)
         style.count(ridges.yaxis)
-        ridges.set_xlabel("sideways displacement of the bone (mm)")
         _draw_jumps(panels, x, states)
         for ax in (force, length):
             ax.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=2, borderaxespad=0.2)
@@ -209,21 +212,22 @@ def _draw_jumps(axes: Sequence[Axes], at: Array, states: Sequence[ContactState])
     return len(jumps) > 0
 
 
-def _draw_errors(ax: Axes, named: Mapping[str, ContactState], quantity: str, unit: float) -> None:
+def _draw_errors(ax: Axes, named: Mapping[str, ContactState], key: str) -> None:
     """Draw the named states whose error is known, with error bars, in the colours of the states."""
     for name, state in named.items():
-        error = getattr(state.error, quantity)
-        if np.isfinite(error) and np.isfinite(state.bone_x) and not (quantity == "f_t" and name != "full_slip"):
+        error, scale = getattr(state.error, key), STEPS[key].scale
+        if np.isfinite(error) and np.isfinite(state.bone_x) and not (key == "f_t" and name != "full_slip"):
             ax.errorbar(
-                _MM * state.bone_x, unit * getattr(state, quantity), unit * error, fmt="D", ms=6, capsize=5,
+                _MM * state.bone_x, scale * getattr(state, key), scale * error, fmt="D", ms=6, capsize=5,
                 color=style.STATE[name], label=f"{called(name, state.voltage)} ± error", zorder=4,
             )  # fmt: skip
 
 
-def _draw_apparent(ax: Axes, x: Array, f_ext: Array, mu_app: Array, mu_0: float | None) -> None:
+def _draw_apparent(ax: Axes, x: Array, states: Sequence[ContactState], mu_0: float | None) -> None:
     """Add mu_app on the right, a second scale of the same curve where f_ext is constant, else a curve of its own."""
-    label = "apparent friction\nµ_app = f_T / f_ext (–)"
-    load, other = float(f_ext[0]), ax
+    label, other = "apparent friction\nµ_app = f_T / f_ext (–)", ax
+    f_ext, mu_app = (np.array([getattr(state, key) for state in states]) for key in ("f_ext", "mu_app"))
+    load = float(f_ext[0])
     if load > 0 and np.allclose(f_ext, load, rtol=1e-6, atol=0):
         style.second_scale(ax, load, label)
     else:
@@ -231,12 +235,12 @@ def _draw_apparent(ax: Axes, x: Array, f_ext: Array, mu_app: Array, mu_0: float 
         other.plot(x, mu_app, "s--", ms=3, color=style.GREEN)
         other.set_ylabel(label, color=style.GREEN)
     if mu_0 is not None:
-        words = f"µ_app = µ_0 = {mu_0:.3g}: without attraction"
-        ax.plot([], [], color="0.4", lw=1, ls="--", label=words)
+        ax.plot([], [], color="0.4", lw=1, ls="--", label=f"µ_app = µ_0 = {mu_0:.3g}: without attraction")
         for sign in np.unique(np.sign(mu_app[np.abs(mu_app) > _RUBS * mu_0])) if mu_0 else ():
             other.axhline(sign * mu_0 * load, color="0.4", lw=1, ls="--")
 
 
+# -- over time -------------------------------------------------------------------------------------------------
 def over_time(path: Path | str | None, states: Sequence[ContactState], title: str) -> Figure:
     """Draw voltage, friction force and contact length over time.
 
@@ -248,75 +252,88 @@ def over_time(path: Path | str | None, states: Sequence[ContactState], title: st
     time = np.array([state.time for state in states])
     short = time[-1] - time[0] < _SHORT
     t = (_MS if short else 1.0) * time
-    rows = (
-        ("voltage U (V)", [state.voltage for state in states], style.VERMILION),
-        ("friction force\nf_T (N/m)", [state.f_t for state in states], style.BLACK),
-        ("contact length\nL_R (mm)", [_MM * state.contact_length for state in states], style.BLUE),
-    )
     with style.look():
         figure = style.figure(7.25, title)
         axes = style.column(figure, [1, 1, 1])
-        for ax, (label, values, colour) in zip(axes, rows, strict=True):
-            ax.plot(t, values, "o-", ms=3, color=colour)
-            ax.set_ylabel(label)
+        drawn = zip(axes, ("voltage", "f_t", "contact_length"), (style.VERMILION, style.BLACK, style.BLUE), strict=True)
+        for ax, key, colour in drawn:
+            _draw(ax, t, states, key, colour)
         words = "; dotted lines: part of the skin jumps" if _draw_jumps(axes, t, states) else ""
         axes[-1].set_xlabel(f"time ({'ms' if short else 's'}){words}")
         return style.save(figure, path)
 
 
-class Period(NamedTuple):
-    """What is drawn of a drive, arrays over one period of shape (samples,), and of a spectrum (components,)."""
+def over_period(found: Any, path: Path | str | None) -> Figure:
+    """Draw voltage, attraction and friction over a period of a drive, and the spectrum of friction.
 
-    time: Array
-    """(s)."""
-    voltage: Array
-    """(V)."""
-    sigma_el: Array
-    """(Pa)."""
-    f_t: Array
-    """Friction force, in its unit."""
-    unit: str
-    frequency: Array
-    """(Hz)."""
-    amplitude: Array
-    """Of the friction force, in its unit."""
-
-
-def over_period(found: Period, title: str, path: Path | None) -> Figure:
-    """Draw a drive over a period; write it as a file where a path is given."""
+    Args:
+        found: a :class:`fingerpad.runs.drive.DrivenFriction`.
+        path: of the PNG file; None for the figure alone.
+    """
+    friction, mean = f"{'F_T' if found.unit == 'N' else 'f_T'} ({found.unit})", found.f_t.mean()
     with style.look():
-        figure = style.figure(6.0)
-        grid = figure.add_gridspec(3, 2, width_ratios=(3, 2))
-        panels = [figure.add_subplot(grid[k, 0]) for k in range(3)]
+        figure = style.figure(6.0, style.plain(f"{found.scene.voltage}, full slip, closed form"))
+        above, right = figure.subfigures(1, 2, width_ratios=(3, 2))
+        panels = style.column(above, [1, 1, 1])
         parts = (
             (found.voltage, "U (V)", style.BLACK),
-            (found.sigma_el / 1e3, r"$\sigma_{el}$ (kPa)", style.ATTRACTION),
-            (found.f_t, f"{_symbol(found)} ({found.unit})", style.VERMILION),
+            (_KPA * found.sigma_el, "attraction (kPa)", style.ATTRACTION),
+            (found.f_t, friction, style.VERMILION),
         )
         for ax, (values, label, colour) in zip(panels, parts, strict=True):
-            ax.plot(1e3 * found.time, values, color=colour)
+            ax.plot(_MS * found.time, values, color=colour)
             ax.set_ylabel(label)
-            ax.grid(alpha=0.3)
-        panels[-1].axhline(
-            found.f_t.mean(), color=style.GREY, ls="--", label=f"mean {found.f_t.mean():.4g} {found.unit}"
-        )
+        panels[-1].axhline(mean, color=style.GREY, ls="--", label=f"mean {mean:.4g} {found.unit}")
         panels[-1].legend(frameon=True)
         panels[-1].set_xlabel("time (ms)")
-        _spectrum(figure.add_subplot(grid[:, 1]), found)
-        figure.suptitle(style.plain(title))
+        ax, largest = right.subplots(), found.amplitude.max(initial=0.0)
+        shown = np.flatnonzero(found.amplitude > _LEAST_AMPLITUDE * largest)[:_COMPONENTS]
+        ax.stem(found.frequency[shown], found.amplitude[shown], linefmt=style.VERMILION, basefmt=" ")
+        ax.set(xlabel="frequency (Hz)", ylabel=f"amplitude of {friction}", xlim=(0, None), ylim=(0, None))
         return style.save(figure, path)
 
 
-def _symbol(found: Period) -> str:
-    """Return the symbol of the friction force: of the whole finger in N, and of a section in N/m."""
-    return "$F_T$" if found.unit == "N" else "$f_T$"
+def raster(found: Any, path: Path | str | None) -> Figure:
+    """Draw the spikes of a run, a panel a class, a row a unit, and above them energy densities at Merkel sites.
+
+    Args:
+        found: :class:`fingerpad.results.spikes.Spikes`.
+        path: of the PNG file; None for the figure alone.
+    """
+    units = {law: [unit for unit in found.units if unit.law == law] for law in found.laws}
+    few, end, colours = max(map(len, units.values())) / 2, _MS * found.seconds, style.CATEGORIES
+    heights = [_PANEL + _ROW * (0 if mine[0].ridge is None else max(len(mine), few)) for mine in units.values()]
+    heights = [_DENSITIES] * (found.densities is not None) + heights
+    with style.look():
+        title = "Spikes of afferents below the ridges that can touch; thresholds are relative"
+        figure = style.figure(1.3 + sum(heights), title)
+        panels = style.column(figure, heights)
+        if found.densities is not None:
+            _draw_densities(panels[0], found.densities)
+        for ax, colour, (law, mine) in zip(panels[-len(units) :], colours, units.items(), strict=False):
+            places, alone = [unit.place for unit in mine], mine[0].ridge is None
+            spikes = [_MS * train for train in found.of(law)]
+            ax.eventplot(spikes, colors=colour, lineoffsets=places, linelengths=0.4 if mine[0].side else 0.8, lw=1.1)
+            ax.set_ylabel(law if alone else f"{law}\nridge", color=colour)
+            ax.set_ylim(min(places) - 0.7, max(places) + 0.7)
+            style.count(ax.yaxis)
+            ax.tick_params(left=not alone, labelleft=not alone)
+        for load in found.loads:
+            begin, last = _MS * load.begin, _MS * load.end
+            for ax in panels:
+                ax.axvline(begin, color=style.GREY, lw=0.8, ls=":")
+            if last - begin > _NAMED * end:
+                above = {"transform": panels[0].get_xaxis_transform(), "ha": "center", "va": "bottom", "fontsize": 9}
+                panels[0].text((begin + last) / 2, 1.0, style.plain(load.name), **above)
+        panels[-1].set(xlabel="time (ms)", xlim=(0, end))
+        return style.save(figure, path)
 
 
-def _spectrum(ax: Axes, found: Period) -> None:
-    shown = np.flatnonzero(found.amplitude > _LEAST_AMPLITUDE * found.amplitude.max(initial=0.0))[:_COMPONENTS]
-    ax.vlines(found.frequency[shown], 0, found.amplitude[shown], color=style.VERMILION)
-    ax.plot(found.frequency[shown], found.amplitude[shown], "o", color=style.VERMILION, ms=4)
-    ax.set(xlabel="frequency (Hz)", ylabel=f"amplitude of {_symbol(found)} ({found.unit})")
-    ax.set_xlim(left=0)
-    ax.set_ylim(bottom=0)
-    ax.grid(alpha=0.3)
+def _draw_densities(ax: Axes, found: Any) -> None:
+    """Draw all densities, those that change most in colours with the numbers of their ridges."""
+    marked = np.sort(np.argsort(-np.ptp(found.values, axis=1))[:_MARKED])
+    ax.plot(_MS * found.time, _KPA * found.values.T, color=style.GREY, lw=0.7, alpha=0.6)
+    for k in marked:
+        ax.plot(_MS * found.time, _KPA * found.values[k], label=f"ridge {found.ridges[int(k)]}")
+    ax.set(ylabel="SED at Merkel\nsites (kPa)", ylim=(0, None))
+    ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))

@@ -69,7 +69,7 @@ def solid(whole: "WholeFinger", section: Profiles, path: Path | None, state: Con
         whole: the finger.
         section: its unloaded cross-section.
         path: of the PNG file; None for the figure alone.
-        state: of the section at the centre, as in :func:`fingerpad.results.pictures.finger.footprint`.
+        state: of the section at the centre, as in :func:`fingerpad.results.pictures.solid.footprint`.
         name: of the state.
     """
     total, finger = whole.states[name], profile(whole.shape)

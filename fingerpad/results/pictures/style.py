@@ -4,7 +4,7 @@ Categories have Okabe and Ito's colours, magnitudes viridis, voltages a ramp of 
 """
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from io import BytesIO
 from pathlib import Path
@@ -15,7 +15,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, FigureBase
 from matplotlib.text import Text
 from matplotlib.ticker import MaxNLocator
 from PIL import Image
@@ -77,7 +77,7 @@ def figure(height: float, title: str = "", width: float = WIDTH) -> Figure:
     return drawn
 
 
-def column(on: Figure, ratios: Sequence[float]) -> list[Axes]:
+def column(on: FigureBase, ratios: Sequence[float]) -> list[Axes]:
     """Return axes below each other, of heights in a ratio, with one scale along x and light lines at its ticks."""
     panels = list(on.subplots(len(ratios), 1, sharex=True, squeeze=False, height_ratios=ratios)[:, 0])
     for axes in panels:
@@ -90,13 +90,6 @@ def second_scale(axes: Axes, unit: float, label: str) -> None:
     """Draw the scale of a quantity over ``unit`` on the right of axes."""
     functions: Any = (lambda value: value / unit, lambda ratio: ratio * unit)
     axes.secondary_yaxis("right", functions=functions).set_ylabel(label)
-
-
-def clear(axes: Iterable[Axes]) -> None:
-    """Take away what is drawn in axes, for another state: scales, labels, titles and legends stay."""
-    for each in axes:
-        for artist in (*each.lines, *each.collections, *each.patches, *each.images, *each.texts):
-            artist.remove()
 
 
 def decades(low: float, high: float) -> list[float]:

@@ -6,13 +6,11 @@ import pytest
 from mpi4py import MPI
 
 from fingerpad.scene import Scene
-from geometry import curved, fingertip, sizing, tags
-from geometry.bodies import foot, ridge
+from geometry import fingertip, sizing, tags, triangles
 from geometry.mesh import load
 from geometry.profiles import GeometryError
 from geometry.shape import session
 from tests.small_finger import SMALL
-from variational import compat
 
 # In gmsh's order: ends, then the middles of 01, 12, 20.
 PLAIN = np.array([[0, 0], [1, 0], [0, 1], [0.5, 0], [0.5, 0.5], [0, 0.5]])
@@ -24,18 +22,7 @@ def test_least_determinant(height, expected):
     nodes = PLAIN.copy()
     nodes[3, 1] = height
     turned = nodes[[2, 1, 0, 4, 3, 5]]
-    np.testing.assert_allclose(curved.least(np.stack([nodes, turned])), expected, atol=1e-14)
-
-
-def test_middles_are_on_the_curve():
-    """Of a ridge, to what gmsh's spline through 128 points is off by; a foot's edges are straight, of first order."""
-    made = load(MPI.COMM_SELF, ridge(40e-6))
-    x, y = made.mesh.geometry.x[:, :2].T
-    low = y < 99e-6
-    assert np.sum(np.abs(y - 50e-6 * (1 - np.cos(2 * np.pi * x / 483e-6)))[low] < 2e-9) > 20
-    assert len(compat.cell_geometry(made.mesh)[0]) == 6
-    straight = load(MPI.COMM_SELF, foot(5e-6, 20e-6, 4e-6, 100e-6))
-    assert len(compat.cell_geometry(straight.mesh)[0]) == 3
+    np.testing.assert_allclose(triangles.least(np.stack([nodes, turned])), expected, atol=1e-14)
 
 
 FINGERS = {
@@ -57,7 +44,7 @@ def test_no_triangle_is_folded(case, monkeypatch):
         numbers, places, _ = gmsh.model.mesh.getNodes()
         at = np.empty((int(numbers.max()) + 1, 2))
         at[numbers] = places.reshape(-1, 3)[:, :2]
-        assert curved.least(at[curved.second_order()]).min() >= 0.2
+        assert triangles.least(at[triangles.second_order()]).min() >= 0.2
 
 
 def folded() -> float:
