@@ -11,6 +11,8 @@ which :mod:`~benchmarks.verification.bearing_area` solves by bracketing in the m
 from itertools import product
 from typing import Any
 
+from scipy.optimize import brentq
+
 from benchmarks.verification import bearing_area as exact
 from benchmarks.verification.bodies import over_screen
 from benchmarks.verification.case import IDENTITY, Case, Row, worst
@@ -38,10 +40,18 @@ def _roundoff(quantity: str, ours: Any, reference: exact.Number) -> Row:
     return Row(quantity, float(ours), float(reference), *_ROUNDOFF)
 
 
+def air_gap_at_external(bam: BearingArea, p_ext: float, voltage: float) -> float:
+    """Return d_eq (m) on the branch in contact at an external pressure (Pa) and a voltage (V)."""
+    fold = bam.pull_off_fold(voltage)
+    end = 20 * bam.h_rms if fold is None else fold
+    found = brentq(lambda v: bam.external_pressure(v, voltage) - p_ext, 0.0, end, xtol=1e-15 * bam.h_rms)
+    return float(bam.air_gap(found))
+
+
 def scalar(p_ext: float, voltage: float) -> tuple[float, float, float]:
     """Return d_eq (m), p_c (Pa) and mu_app of the scalar equation at a pressure (Pa) and a voltage (V)."""
     bam = BearingArea(H_0)
-    d_eq = bam.air_gap_at_external(p_ext, voltage)
+    d_eq = air_gap_at_external(bam, p_ext, voltage)
     p_c = p_ext + float(exact.EPS_0) * voltage**2 / 2 / (H_0 + d_eq) ** 2
     return d_eq, p_c, MU_F * p_c / p_ext
 
