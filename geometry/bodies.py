@@ -275,30 +275,6 @@ def quarter_tube(inner: float, outer: float, divisions: int) -> float:
     return 1 / _MM
 
 
-@shape(_NEEDED)
-def cooks_membrane(divisions: int, gap: float = 10e-3) -> float:
-    """Return Cook's tapered and swept panel, 48 mm long.
-
-    The mesh is a regular grid, halved into triangles. The lower edge is ridge 0, the left one, which is clamped, the
-    bone's rim, the right one, which is loaded, and the upper one are sides.
-
-    Args:
-        divisions: of each edge.
-        gap: height of the lowest corner above the screen (m).
-
-    Raises:
-        GeometryError: a length is not positive.
-    """
-    _refuse_non_positive(divisions=divisions, gap=gap)
-    geo, low = gmsh.model.geo, gap * _MM
-    corners = [geo.addPoint(x, y + low, 0.0) for x, y in ((0.0, 0.0), (48.0, 44.0), (48.0, 60.0), (0.0, 44.0))]
-    edges = [geo.addLine(corners[k], corners[(k + 1) % 4]) for k in range(4)]
-    body = _grid(edges, (divisions + 1,) * 4)
-    _groups(body, bottom=[edges[0]], right=edges[1], top=edges[3], left=edges[2])
-    gmsh.model.mesh.generate(2)
-    return 1 / _MM
-
-
 def _grid(edges: list[int], points: tuple[int, ...]) -> int:
     """Return a surface of four edges, to be meshed regularly with so many points on each."""
     geo = gmsh.model.geo

@@ -149,7 +149,7 @@ def topography(argv: Sequence[str]) -> int:
     parser = Parser("topography", _TOPOGRAPHY)
     parser.add_argument("file", type=path, metavar="FILE", help="matrix of heights, or a file of an instrument")
     parser.add_table("roughness.topography")
-    parser.add_file("--plot", PICTURE, "picture of map, heights and spectrum")
+    parser.add_file("--plot", PICTURE, "picture of the map")
     args = parser.read(argv)
     found = _scan(args)
     try:
@@ -158,7 +158,7 @@ def topography(argv: Sequence[str]) -> int:
         raise SceneError(f"{clip(str(args.file), 80)}: {error}") from None
     echo("\n".join(_report(args.file, found, table, fit)))
     if args.plot:
-        draw_map(args.plot, args.file.name, found, fit)
+        _draw_map(args.plot, args.file.name, found)
         echo(f"# Written: {args.plot}")
     return 0
 
@@ -197,7 +197,8 @@ def _report(file: Path, found: Found, table: dict[str, float], fit: Fit) -> Iter
         yield f"# {missing} pixels missing ({share:.2g} %), filled smoothly, which makes h_rms a little smaller"
     yield f"# skewness {heights.skewness:.2f}, kurtosis {heights.kurtosis:.2f} (0 and 3 of the Gaussian of the model)"
     long, short = (2e6 * math.pi / q for q in fit.q_range)
-    yield f"# {_hurst(fit)}, fitted between wavelengths of {long:.3g} µm and {short:.3g} µm"
+    hurst = f"{fit.hurst:.2f}" if fit.hurst_found else f"not found within {HURST[0]:g} to {HURST[1]:g}"
+    yield f"# Hurst exponent {hurst}, fitted between wavelengths of {long:.3g} µm and {short:.3g} µm"
     if fit.resolved:
         yield f"# roll-off at {fit.wavelength * um:.3g} µm: the largest wavelength"
     else:
@@ -214,31 +215,11 @@ def _report(file: Path, found: Found, table: dict[str, float], fit: Fit) -> Iter
         yield f"{key} = {value:.4g}"
 
 
-def _hurst(fit: Fit) -> str:
-    """Return the Hurst exponent in words."""
-    if fit.hurst_found:
-        return f"Hurst exponent {fit.hurst:.2f}"
-    return f"Hurst exponent not found within {HURST[0]:g} to {HURST[1]:g}"
-
-
-def draw_map(file: Path, name: str, found: Found, fit: Fit) -> None:
-    """Draw the map without curvature, the distribution of its heights, and its spectrum with the fit."""
+def _draw_map(file: Path, name: str, found: Found) -> None:
+    """Draw the map without curvature."""
     flat, um = found.map.detrended("curvature"), 1e6
-    heights, ring = distribution(flat), power_spectrum(flat, window="hann").radial()
-    with output.panels(file, f"{name}: curvature removed", 3) as (figure, (area, shares, psd)):
+    with output.panels(file, f"{name}: curvature removed") as (figure, (ax,)):
         limit, ends = float(np.abs(flat.heights).max()) * um, (0, flat.size[0] * um, 0, flat.size[1] * um)
-        image = area.imshow(flat.heights.T * um, origin="lower", extent=ends, cmap="cividis", vmin=-limit, vmax=limit)
-        figure.colorbar(image, ax=area, label="height (µm)", shrink=0.8)
-        z = np.linspace(-4, 4, 200) * heights.h_rms
-        middle = (heights.edges[1:] + heights.edges[:-1]) / 2
-        output.curve(shares, 0, middle * um, heights.density / um, "map")
-        output.curve(shares, 1, z * um, heights.gaussian(z) / um, f"Gaussian, {heights.h_rms * um:.3g} µm rms")
-        psd.loglog(ring.q[ring.psd > 0], ring.psd[ring.psd > 0], "o", ms=4, color="0.5", label="map, Hann's window")
-        q = np.geomspace(*fit.q_range, 100)
-        output.curve(psd, 1, q, fit.psd(q), f"fit: {_hurst(fit)}")
-        area.set(xlabel="x (µm)", ylabel="y (µm)")
-        shares.set(xlabel="height (µm)", ylabel="probability density (1/µm)")
-        shares.set_ylim(0, 1.35 * float(heights.density.max()) / um)
-        psd.set(xlabel="wavevector q (1/m)", ylabel="power spectrum C (m⁴)")
-        for ax in (shares, psd):
-            ax.legend()
+        image = ax.imshow(flat.heights.T * um, origin="lower", extent=ends, cmap="cividis", vmin=-limit, vmax=limit)
+        figure.colorbar(image, ax=ax, label="height (µm)", shrink=0.8)
+        ax.set(xlabel="x (µm)", ylabel="y (µm)")

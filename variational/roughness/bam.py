@@ -200,22 +200,6 @@ class BearingArea(Named, Closure):
             float(-1 / decay + 2 * near / width - 2 * self.h_0 / width**2 * np.exp(-beyond) / part),
         )
 
-    def air_gap_at_external(self, p_ext: float, voltage: float) -> float:
-        """Return d_eq (m) on the branch in contact at external pressure ``p_ext`` (Pa).
-
-        Raises:
-            ValueError: no equilibrium on that branch.
-        """
-        fold = self.pull_off_fold(voltage)
-        end = 20 * self.h_rms if fold is None else fold
-        highest, lowest = self.external_pressure(0.0, voltage), self.external_pressure(end, voltage)
-        if not lowest < p_ext <= highest:
-            raise ValueError(f"p_ext is {p_ext:g} Pa; at {voltage:g} V contact needs {lowest:.4g} to {highest:.4g} Pa")
-        found = scipy.optimize.brentq(
-            lambda v: self.external_pressure(v, voltage) - p_ext, 0.0, end, xtol=_SEPARATION * self.h_rms
-        )
-        return float(self.air_gap(found))
-
     def threshold(self, approximate: bool = False) -> float:
         """Return the voltage (V) of macroscopic stickiness.
 

@@ -18,13 +18,12 @@ than the surface: it takes away roughness that is finer than a hole, about in pr
 """
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.linalg import spsolve
-from scipy.special import ndtr
 
 Array = NDArray[np.float64]
 _Trend = Literal["mean", "tilt", "curvature"]
@@ -100,28 +99,17 @@ def polynomials(shape: tuple[int, ...], degree: int) -> Array:
     return np.linalg.qr(np.stack(columns, axis=1))[0]
 
 
-@dataclass(frozen=True, eq=False)
-class Distribution:
+class Distribution(NamedTuple):
     """How the heights of one or more maps are distributed about their means."""
 
-    edges: Array
-    """Edges (m) of the histogram's bins."""
-    density: Array
-    """Probability density (1/m) in each bin; its integral is 1."""
     h_rms: float
     """Root mean square height (m)."""
     skewness: float
     kurtosis: float
     """Fourth moment over h_rms^4: 3 for a Gaussian."""
-    distance: float
-    """Largest difference of the cumulative distribution from the Gaussian's of the same h_rms (Kolmogorov's)."""
-
-    def gaussian(self, height: Array) -> Array:
-        """Return the Gaussian's density (1/m) of the same h_rms at heights (m)."""
-        return np.asarray(np.exp(-((height / self.h_rms) ** 2) / 2) / (np.sqrt(2 * np.pi) * self.h_rms))
 
 
-def distribution(*maps: HeightMap, bins: int = 60) -> Distribution:
+def distribution(*maps: HeightMap) -> Distribution:
     """Return the distribution of the heights of all maps together, each about its own mean.
 
     Raises:
@@ -133,12 +121,8 @@ def distribution(*maps: HeightMap, bins: int = 60) -> Distribution:
     h_rms = float(np.sqrt(np.mean(h**2)))
     if h_rms == 0:
         raise ValueError("all heights are the same; there is no roughness to describe")
-    density, edges = np.histogram(h, bins=bins, density=True)
     z = h / h_rms
-    below = np.arange(len(z) + 1) / len(z)
-    gaussian = ndtr(z)
-    distance = max(np.max(below[1:] - gaussian), np.max(gaussian - below[:-1]))
-    return Distribution(edges, density, h_rms, float(np.mean(z**3)), float(np.mean(z**4)), float(distance))
+    return Distribution(h_rms, float(np.mean(z**3)), float(np.mean(z**4)))
 
 
 def filled(heights: Array) -> Array:
