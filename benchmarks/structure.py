@@ -7,8 +7,8 @@ modules that it imports, at its head, inside functions and for type checkers; ci
 scene passes a module where a function has a parameter, or returns a value, that is annotated as a Scene. A list of
 quantities is a literal collection of three or more names of quantities outside of the module that defines them. A test
 of a law is an isinstance on a class of contact, materials, attraction or roughness that is no interface: laws answer
-such questions by methods. Public names are functions, classes and constants of modules without a leading underscore,
-and of these the ones of __all__ where a module has it.
+such questions by methods. Public names are functions and classes without a leading underscore; the promised ones stand
+in the __all__ of fingerpad.
 """
 
 import argparse
@@ -148,20 +148,9 @@ def for_checkers(files: Mapping[str, Path]) -> int:
 
 
 def public(path: Path) -> set[str]:
-    """Return the public functions, classes and constants of a module."""
-    names, listed = set[str](), None
-    for node in tree(path).body:
-        if isinstance(node, ast.FunctionDef | ast.ClassDef):
-            names.add(node.name)
-        targets = (
-            node.targets if isinstance(node, ast.Assign) else [node.target] if isinstance(node, ast.AnnAssign) else []
-        )
-        for target in targets:
-            names |= {target.id} if isinstance(target, ast.Name) else set()
-            if isinstance(target, ast.Name) and target.id == "__all__":
-                listed = {each.value for each in ast.walk(node) if isinstance(each, ast.Constant)}
-    found = {name for name in names if not name.startswith("_")}
-    return found if listed is None else found & listed
+    """Return the public functions and classes of a module."""
+    found = {node.name for node in tree(path).body if isinstance(node, ast.FunctionDef | ast.ClassDef)}
+    return {name for name in found if not name.startswith("_")}
 
 
 def tests_of_laws(files: Mapping[str, Path]) -> list[str]:

@@ -240,20 +240,3 @@ def test_interrupted_search_reached_nothing(monkeypatch):
             found.run()
         assert not found.failure and not found.summary()["reached"]
     assert search(monkeypatch, {"mu_app": 0.01}).summary()["reached"]
-
-
-# -- without a force that presses ---------------------------------------------------------------------------
-def test_errors_without_a_force_are_those_of_the_friction_force(monkeypatch):
-    """There is no coefficient then, and no line that says nan ± nan."""
-
-    def unpressed(model, states, comm, views=False, stiffer=None):
-        solve = known(model, states, comm)
-        change(solve, mu_app=np.nan)
-        return solve
-
-    model, shown = model_of({"numerics": {"memory": 1e15}}), []
-    monkeypatch.setattr(refining, "solve_again", unpressed)
-    found = refinement(model, unpressed(model, {}, MPI.COMM_SELF), shown.append)
-    found.run()
-    assert "full_slip_f_t" in found.estimates() and "full_slip_mu_app" not in found.estimates()
-    assert any("friction force" in line for line in shown) and not any("nan" in line for line in shown)

@@ -40,18 +40,6 @@ def test_units_are_independent(name):
     assert np.array_equal(together[2], law.spikes(stimulus[2], STEP))
 
 
-@pytest.mark.parametrize("name", sorted(fp.afferents.LAWS))
-def test_what_has_always_been_there_is_no_onset(name):
-    """A constant stimulus of SA1 gives the regular spikes of its constant current, one of the others none."""
-    spikes = fp.afferents.LAWS[name].spikes(np.full(20001, 3e4), STEP)
-    if not name.startswith("SA1"):
-        assert len(spikes) == 0
-        return
-    # V = 8 R k4 sigma (1 - exp(-t / RC)) reaches 30 mV; within a step of 0.1 ms
-    interval = -0.15 * np.log(1 - 30e-3 / (8 * 5e9 * 0.0312e-12 * 30))
-    assert np.diff(spikes) == pytest.approx(interval, abs=STEP)
-
-
 def test_sampling_does_not_matter():
     """A ramp is straight between samples: those of 1 ms give the spikes of those of 0.1 ms."""
     for law in (fp.afferents.SA1(), fp.afferents.RA1(), fp.afferents.PC()):

@@ -62,26 +62,6 @@ def test_ridges_side_by_side():
     np.testing.assert_array_equal(load(MPI.COMM_WORLD, ridges(1, size)).mesh.geometry.x, one.mesh.geometry.x)
 
 
-@pytest.mark.mpi
-def test_quarter_tube():
-    """Its arcs are on its radii about an axis 4 mm up, its wall the area between.
-
-    Tolerance: a parabola through ends and middle of an arc of the angle t is t^4 / 480 shorter than it, and chords
-    would be t^2 / 24. The area is as far off.
-    """
-    body, n = load(MPI.COMM_WORLD, quarter_tube(MM, 2 * MM, 24)), 24
-    assert body.mesh.topology.index_map(2).size_global == 2 * n**2
-    arc, off = np.pi / 2 * MM, (np.pi / 2 / n) ** 4 / 100
-    assert lengths(body) == pytest.approx(
-        {tags.ridge(0): 2 * arc, tags.BONE_RIM: arc, tags.SIDES: 2 * MM}, rel=off, abs=0
-    )
-    area = np.pi / 4 * (4 - 1) * MM**2
-    assert integral(body, tags.STRATUM_CORNEUM) == pytest.approx(area, rel=off, abs=0)
-    for tag, radius in ((tags.ridge(0), 2 * MM), (tags.BONE_RIM, MM)):
-        x = vertices(body, body.facet_tags.find(tag))
-        np.testing.assert_allclose(np.hypot(x[:, 0], x[:, 1] - 4 * MM), radius, rtol=1e-12)
-
-
 def bottom(body) -> np.ndarray:
     """Return the bottom's nodes from left to right, shape (nodes, 2)."""
     nodes = vertices(body, body.facet_tags.find(tags.ridge(0)))[:, :2]
@@ -144,19 +124,6 @@ def test_area(body):
     expected = np.diff(mean_depths()) * WAVE
     found = [integral(body, tag) for tag in strip.LAYERS]
     assert_allclose(found, expected, rtol=2e-3)
-
-
-@pytest.mark.mpi
-def test_rim_and_sides(body):
-    """The top is as wide as the ridges and at its height; the sides reach from the grooves to it.
-
-    Tolerance: roundoff.
-    """
-    mesh = body
-    assert integral(mesh, tags.BONE_RIM, kind="ds") == pytest.approx(WAVE, rel=1e-12, abs=0)
-    height = integral(mesh, tags.BONE_RIM, ufl.SpatialCoordinate(mesh.mesh)[1], "ds") / (WAVE)
-    assert height == pytest.approx(HEIGHT, rel=1e-12, abs=0)
-    assert integral(mesh, tags.SIDES, kind="ds") == pytest.approx(2 * (HEIGHT - 100 * UM), rel=1e-12, abs=0)
 
 
 # -- single runs of a coarse strip: what they reach, and how a failure is recorded -----------------------------------

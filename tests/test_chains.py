@@ -14,9 +14,9 @@ from fingerpad.accuracy.states import Solve
 from fingerpad.model.full_slip import Solved
 from fingerpad.results.data import Cost
 from fingerpad.results.result import Result
-from fingerpad.runs import chains as of_sweep
+from fingerpad.runs import batch as of_sweep
 from fingerpad.runs import full_slip
-from fingerpad.runs.chains import chains
+from fingerpad.runs.batch import chains
 from fingerpad.runs.full_slip import Chain, Fine
 from fingerpad.runs.sweep import _neighbours
 from fingerpad.runs.sweep_columns import OTHER
@@ -156,26 +156,6 @@ def test_point_has_the_values_and_errors_of_the_scenes_mesh(monkeypatch):
     monkeypatch.setattr(Chain, "_final", lambda self, model, state: sharp(state))
     (result,), _ = followed(monkeypatch, Skin(), [100.0])
     assert not any("mesh" in text.text for text in result.cautions)
-
-
-def test_second_state_is_one_of_the_scenes_mesh(monkeypatch):
-    """Two states of the chain's mesh that are one on the scene's are not two; nor is one that is not found there."""
-    monkeypatch.setattr(Chain, "_final", lambda self, model, state: sharp(state, ridges_in_contact=4, f_t=0.99))
-    results, written = followed(monkeypatch, Skin(), [100.0, 70.0, 50.0])
-    assert written == [0, 1, 2] and not any(OTHER in r.record for r in results)
-
-    def missing(self, model, state):
-        if state.reached == "full slip from voltage 50 V":
-            raise StepFailed("not there")
-        return sharp(state, f_t=state.f_t / 2)
-
-    monkeypatch.setattr(Chain, "_final", missing)
-    results, written = followed(monkeypatch, Skin(), [100.0, 70.0, 65.0, 50.0])
-    assert written == [0, 1, 2, 3, 1], "from 65 V, the one that was not found there goes on"
-    assert results[1].record[OTHER]["f_t"] == 0.375
-    assert "f_T 0.625 N/m with 5 ridges (full slip from voltage 100 V) and f_T 0.375 N/m" in str(
-        results[1].cautions[-1]
-    )
 
 
 def test_point_not_found_on_the_scenes_mesh_is_a_run(monkeypatch):

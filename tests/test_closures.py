@@ -13,7 +13,7 @@ from fingerpad.reduced import closure_band, cylinders
 from fingerpad.reduced.closure_band import TIPS
 from fingerpad.results.headline import band_in_words
 from fingerpad.results.quantities import BAND
-from fingerpad.scene import Scene, from_data, with_values
+from fingerpad.scene import Scene, from_data
 from variational.roughness.spectrum import SelfAffine
 from variational.state import RidgeStates
 
@@ -167,22 +167,6 @@ def test_sweep_over_closures_is_of_one_surface():
     for law, found in zip(laws, curve, strict=True):
         alone = fp.run(scene.replace(roughness={"law": law, "h_rms": 1e-6}), model="cylinders")
         assert found.full_slip.mu_app == pytest.approx(alone.full_slip.mu_app, rel=1e-12)
-
-
-def test_sweep_over_laws_of_friction_keeps_a_coefficient_that_is_a_number():
-    """It stands for Coulomb's mu_f, which Derjaguin's law has too."""
-    scene = fp.Scene(friction=0.3)
-    assert with_values(scene, {"friction.law": "Coulomb"}).friction == 0.3
-    assert with_values(scene, {"friction.law": "Derjaguin", "friction.tau_0": 5e3}).friction.mu_f == 0.3
-
-
-@pytest.mark.parametrize(("voltage", "told"), [(200, True), (80, False)])
-def test_check_tells_that_ridges_adhere(capsys, tmp_path, voltage, told):
-    """Before a run that follows jumps for a long time."""
-    given = "roughness.law=BoundaryElements", f"voltage={voltage}"
-    assert main(["check", "--out", str(tmp_path), *(word for each in given for word in ("--set", each))]) == 0
-    words = f"not reach full slip: by the closed form ridges adhere at {voltage} V; take a smaller voltage"
-    assert (words in capsys.readouterr().out) == told
 
 
 # -- ridges that adhere without a load: what a failure says of them, by states of one's own making -------------------

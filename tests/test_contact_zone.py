@@ -116,9 +116,7 @@ def test_finger_made_whole_is_the_one_that_was_whole(half, tmp_path, monkeypatch
 
 
 # -- which ridges are meshed to touch --------------------------------------------------------------------------------
-COMM = MPI.COMM_WORLD
 PRESS = {"name": "press", "bone_height": -50e-6}
-LIGHT = {"mesh": MESH, "history": [PRESS], "output": {"errors": False}}
 RUNS = json.loads((Path(__file__).parent / "reach.json").read_text(encoding="utf-8"))
 """The last ridge, on either side, that is in contact in any step of a full run, by scene."""
 
@@ -151,24 +149,3 @@ def test_ridges_are_enough_for_what_full_runs_touch(name):
 def test_rule_of_thumb(data, last):
     """More ridges under a larger force, depth or friction, never fewer than two of those there are."""
     assert last_ridge(data) == last
-
-
-# -- runs ------------------------------------------------------------------------------------------------------
-@pytest.fixture(scope="module")
-def lean(tmp_path_factory):
-    """A lightly pressed finger whose ridges the rule chose."""
-    folder = tmp_path_factory.mktemp("lean")
-    return folder, run(from_data(LIGHT), folder, COMM)
-
-
-@pytest.mark.long
-def test_same_answer_with_fewer_unknowns(lean, tmp_path):
-    """As with ridges -10 to 10, on meshes that differ from ridge 4 on.
-
-    Tolerance: they grow by 0.8 a distance, and the finer skin of the other gives by 1.4e-3 of the force. Facets of
-    30 um are few: a twelfth of the unknowns is spared.
-    """
-    whole = run(from_data(LIGHT | {"mesh": MESH | {"touching_half_arc": 5e-3}}), tmp_path, COMM)
-    for name in ("f_contact", "contact_length"):
-        assert lean[1][f"charged_{name}"] == pytest.approx(whole[f"charged_{name}"], rel=3e-3), name
-    assert lean[1]["unknowns"] < 0.95 * whole["unknowns"]

@@ -180,14 +180,16 @@ def adhering(**keys):
     return load(SMALL).replace(mesh={"contact": 40e-6}, roughness=LAW, **keys)
 
 
-@pytest.mark.parametrize(("where", "method"), [(StateSolver, "_restored"), (Simulation, "run")])
+@pytest.mark.parametrize(
+    ("where", "method"), [pytest.param(StateSolver, "_balance", marks=pytest.mark.long), (Simulation, "run")]
+)
 def test_restart_names_the_ridge_that_adheres(monkeypatch, where, method):
     """Where a state is not found on the final mesh, and where the path is lost."""
     found, once = getattr(where, method), ["full slip found no equilibrium"]
 
     def failing(self, *args):
         restart = found(self, *args)
-        if once and self.states[-1].voltage and (where is Simulation or args[1] == "full slip"):
+        if once and self.states[-1].voltage and (where is Simulation or args[0] == "full slip"):
             raise StepFailed(once.pop())
         return restart
 
@@ -203,8 +205,6 @@ def test_state_that_roundoff_may_choose_is_a_caution():
     words = "full slip, solved again with a contact size of 4e-05 m: skin jumped on the way, and roundoff"
     (said,) = [text for text in map(str, fp.run(adhering()).cautions) if text.startswith(words)]
     assert ADHERES in said
-    plain = fp.run(adhering().replace(roughness={"law": "BearingArea"}))
-    assert not [text for text in plain.cautions if "skin jumped" in text.text]
 
 
 def test_meshes_too_coarse_to_be_of_one_shape_are_noted(monkeypatch):

@@ -29,16 +29,6 @@ def dense(profiles, depth, count=400001):
     return profiles.point(s, depth(s))
 
 
-def test_arc_length(profiles):
-    """Points one wavelength apart in s are so along the outline.
-
-    Tolerance: chords of a thousandth of it and the interpolation in a table of arc lengths leave 4e-9.
-    """
-    s = np.linspace(20 * WAVE, 21 * WAVE, 1001)
-    steps = np.linalg.norm(np.diff(profiles.point(s), axis=0), axis=1)
-    assert steps.sum() == pytest.approx(WAVE, rel=2e-8)
-
-
 @pytest.mark.parametrize("theta", [0.0, 0.3, np.pi / 2, 2.0, np.pi, -2.5])
 def test_depths(profiles, theta):
     """The formulas of the three interfaces, below the outline's mean. Tolerance: roundoff."""

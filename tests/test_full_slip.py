@@ -133,10 +133,9 @@ def solved():
     return slips, found
 
 
-@pytest.mark.mpi
 def test_full_slip_is_that_of_the_path(solved):
-    """Air gaps are solved to 1e-6, and forces depend on them less than in proportion."""
-    for changes, direct in zip(CHAIN[:-1], solved[1][1:-1], strict=True):
+    """Every second state. Air gaps are solved to 1e-6, and forces depend on them less than in proportion."""
+    for changes, direct in zip(CHAIN[1:-1:2], solved[1][2:-1:2], strict=True):
         state = path_to(changes).states[-1]
         assert direct.state.f_t == pytest.approx(state.f_t, rel=1e-6), changes
         assert direct.state.contact_length == pytest.approx(state.contact_length, rel=1e-5), changes

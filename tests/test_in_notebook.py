@@ -67,7 +67,7 @@ def test_words_are_escaped():
     assert "&lt;i&gt;" in replace(sweep, notes=("<i>",))._repr_html_()
 
 
-@pytest.mark.parametrize("backend", ["module://matplotlib_inline.backend_inline", "module://none.at_all", "nonsense"])
+@pytest.mark.parametrize("backend", ["module://matplotlib_inline.backend_inline", "nonsense"])
 def test_pictures_of_a_command_have_no_backend(tmp_path, backend):
     """As a terminal of Jupyter has it; Matplotlib may refuse to be imported under it."""
     words = ["-m", "fingerpad", "microscale", "--plot", tmp_path / "a.png"]

@@ -68,13 +68,6 @@ def test_coefficient_is_fitted_without_voltage(grid):
     )
 
 
-@pytest.mark.parametrize("columns", [{"voltage": [0, 0]}, {"voltage": [100, 200]}])
-def test_nothing_is_fitted_to_one_kind_of_rows(grid, columns):
-    """Without rows at 0 V, or with no others, computed friction is that of the scene."""
-    found = fp.compare(frame(force=[25, 75], friction=[0.3, 0.4], **columns), grid)
-    assert found.attrs["fit"] == {} and "mu_0" not in found
-
-
 def test_command_prints_fit_and_remarks(grid, tmp_path, capsys):
     """Fit, signs and ignored columns in words; a column for the coefficient in the file; a picture."""
     file = tmp_path / "lab.csv"

@@ -93,9 +93,8 @@ def test_waveform_is_the_loads_by_hand():
 
 
 def test_sign_of_the_voltage_changes_nothing():
-    """Bit for bit: of a constant voltage, of a table, and where a sign changes between two loads."""
+    """Bit for bit: of a table, and where a sign changes between two loads."""
     for up, down in (
-        ([{"name": "charge", "voltage": 90.0}], [{"name": "charge", "voltage": -90.0}]),
         (
             [{"name": "a", "voltage": 50.0}, {"name": "b", "voltage": 90.0}],
             [{"name": "a", "voltage": 50.0}, {"name": "b", "voltage": -90.0}],
@@ -151,7 +150,6 @@ def test_move_after_full_slip_and_its_time():
     assert states[-1].time == pytest.approx(stop.time + 0.01, rel=1e-12)
 
 
-@pytest.mark.mpi
 def test_square_jumps_at_one_place():
     """The bone stands while the voltage jumps, up and down; the forces on either side are those of the plateaus."""
     states = follow(PRESS, SLIDE, BY | {"voltage": WAVE | {"waveform": "square"}, "duration": 1.6 / 60})

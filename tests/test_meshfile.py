@@ -95,12 +95,6 @@ def changed(change):
     return build
 
 
-def twice():
-    """Give the layer a second name."""
-    entities = gmsh.model.getEntitiesForPhysicalGroup(2, tags.STRATUM_CORNEUM)
-    gmsh.model.addPhysicalGroup(2, entities, 77, "dermis")
-
-
 def two_parts():
     """Two squares of two layers that touch and share no node."""
     geo, lines, surfaces = gmsh.model.geo, [], []
@@ -114,13 +108,6 @@ def two_parts():
     gmsh.model.addPhysicalGroup(1, lines[0][:1], name="ridge 0")
     gmsh.model.addPhysicalGroup(1, lines[1][2:3], name="bone rim")
     gmsh.model.mesh.generate(2)
-
-
-def solid():
-    gmsh.model.occ.addBox(0, 0, 0, MM, MM, MM)
-    gmsh.model.occ.synchronize()
-    gmsh.model.addPhysicalGroup(3, [1], name="dermis")
-    gmsh.model.mesh.generate(3)
 
 
 def squares():
@@ -170,7 +157,6 @@ REFUSED = {
     "no rim": (named(1, tags.BONE_RIM, None), "the group 'bone rim' is missing"),
     "no skin": (named(1, tags.ridge(0), None), "no skin can touch; give the facets that can a group 'ridge 0'"),
     "no layer": (named(2, tags.STRATUM_CORNEUM, None), "no group of cells is a layer; give at least one of 'stratum"),
-    "two layers in one": (changed(twice), "groups 'stratum corneum' and 'dermis' overlap"),
     "mm": (lambda: RIDGE(), "the body is 0.6 m large, which is no finger; lengths are in m: did you mean mm?"),
     "below": (changed(lambda: scale(1, up=-1e-5)), "the lowest point is at y = -1e-05 m, below the screen at y = 0"),
     "out of the plane": (changed(lambda: scale(1, out=1e-4)), "nodes lie out of the plane z = 0"),
@@ -179,7 +165,6 @@ REFUSED = {
         "'Line 4'; cells must be triangles with 3 or with 6 nodes",
     ),
     "folded": (changed(folded), "triangles are inverted by nodes in the middle of their edges, the first at ("),
-    "volumes": (solid, "group 'dermis' is of volumes; the mesh must be plane"),
     "rim inside": (partial(rim_elsewhere, True), "group 'bone rim' has edges inside the body"),
     "no area": (changed(lambda: thrown(flat=True)), "triangles have no area, the first at"),
     "orientation": (changed(lambda: thrown(flat=False)), "triangles are clockwise and the others are not"),

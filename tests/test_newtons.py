@@ -147,7 +147,13 @@ def test_accuracy_is_refused():
 @pytest.mark.parametrize(
     ("of", "name", "error", "words"),
     [
-        (newtons, "at_force", BeyondTrace("of a test"), "the correction of the traces failed: of a test; give f_ext"),
+        pytest.param(
+            newtons,
+            "at_force",
+            BeyondTrace("of a test"),
+            "the correction of the traces failed: of a test; give f_ext",
+            marks=pytest.mark.long,
+        ),
         (Branches, "follow", StepFailed("no equilibrium"), "the light press failed: no equilibrium; give f_ext"),
     ],
 )

@@ -14,7 +14,7 @@ from matplotlib.tri import Triangulation
 
 import fingerpad as fp
 from fingerpad.results.pictures import style
-from fingerpad.results.pictures.curves import SurfaceProfile, history, over_time, saw_teeth, surface
+from fingerpad.results.pictures.curves import SurfaceProfile, history, over_time, surface
 from fingerpad.results.pictures.finger import finger
 from fingerpad.scene import from_data
 from geometry import tags
@@ -151,20 +151,6 @@ def test_surface(tmp_path):
     assert np.isnan(pressure.get_ydata()).sum() == 17  # lines break between ridges
 
 
-@pytest.mark.parametrize(
-    ("p", "height"),
-    [
-        ([0.0, 1.0, 3.0, 2.0, 0.0, np.nan, 0.0, 4.0, 2.0, 1.0], 0.0),
-        ([0.0, 1.0, 4.0, 1.0, 3.0, 1.0, 0.0], 2 / 4),
-        ([4.0, *(8 * [1.0]), 4.0], 0.0),
-        ([0.0, 0.0, 0.0], 0.0),
-    ],
-)
-def test_saw_teeth(p, height):
-    """The depth between two larger pressures, over the peak; gaps of contact and wide hollows are none."""
-    assert saw_teeth(np.array(p)) == pytest.approx(height)
-
-
 @pytest.mark.parametrize(("tooth", "noted"), [(0.0, False), (0.3, True)])
 def test_note_on_a_mesh_too_coarse_for_the_pressure(tooth, noted):
     smooth = profile("full slip", 0.0, -1.0)
@@ -239,16 +225,6 @@ def test_nothing_is_cut_off(snapshot, scale):
         assert box.x0 >= 0 and box.y0 >= 0 and box.x1 <= wide and box.y1 <= high, figure.get_suptitle()
 
 
-def test_surface_without_contact(tmp_path):
-    """No pressure anywhere is a state too."""
-    touching = profile("above the screen", 0.0, 0.0)
-    nothing = 0 * touching.p
-    state = replace(touching, y=touching.y + 1e-6, p=nothing, t=nothing, p_el=nothing)
-    state = replace(state, state=replace(LOADED, bone_x=0.0, f_ext=0.0, contact_length=0.0))
-    surface(tmp_path / "surface.png", [state], TITLE)
-    assert (tmp_path / "surface.png").stat().st_size > 10_000
-
-
 # -- pictures of a result that was read from its folder --------------------------------------------------------------
 KINDS = ("history", "surface", "finger")
 RUNS = {"plain": {"output": {"errors": False}}, "refined": {"accuracy": {"mu_app": 0.2}}}
@@ -282,18 +258,3 @@ def test_picture_whose_arrays_are_gone_is_refused(ran, tmp_path, kind):
     assert read.plot("history").axes
     with pytest.raises(ValueError, match="its folder has no fields.npz"):
         read.plot(kind)
-
-
-@pytest.mark.slow
-def test_folder_is_kept_and_a_damaged_file_is_none(ran, tmp_path, monkeypatch):
-    """Where the program goes to another folder; and where a file was cut short."""
-    shutil.copytree(ran.folder, tmp_path / "a")
-    (tmp_path / "b").mkdir()
-    monkeypatch.chdir(tmp_path)
-    read = fp.Result.load("a")
-    monkeypatch.chdir(tmp_path / "b")
-    assert read.plot("surface").axes
-    whole = (tmp_path / "a" / "fields.npz").read_bytes()
-    (tmp_path / "a" / "fields.npz").write_bytes(whole[: len(whole) // 2])
-    with pytest.raises(ValueError, match=r"its folder has no fields\.npz"):
-        read.plot("surface")

@@ -107,7 +107,7 @@ def test_browser_opens_it_and_steps_through_the_states(page, tmp_path, size):
     assert all(curves) and curves[0] != curves[-1]
     assert any(words.startswith("ridge ") and "air gap" in words for words in found["tip"])
     assert any(words.startswith("attraction: ") for words in found["tip"])
-    assert found["charts"] == len(states) + 2, "over sliding, and the solver's work"
+    assert found["charts"] == len(states) + 1, "over sliding"
 
 
 @pytest.mark.parametrize("size", [*SIZES.values(), (1920, 1080)])
@@ -190,7 +190,7 @@ def test_full_slip_without_a_coefficient_has_its_force(folder):
     page = run_page.page(found)
     text = re.sub(r"<script.*?</script>", "", page, flags=re.DOTALL)
     assert f"f<sub>T</sub> = {QUANTITIES['f_t'].shown(slip.f_t, slip.error.f_t)} N/m" in text.replace("\u00a0", " ")
-    assert "would change f<sub>T</sub> at full slip by" in text and not re.search(r"\bnan\b", text)
+    assert not re.search(r"\bnan\b", text)
     told = [each.what for each in trust.findings(found)]
     assert "errors are not estimated" not in told and {"mesh", "the mesh is coarse"} & set(told)
 
@@ -240,7 +240,7 @@ def test_bad_folder_is_refused_in_a_sentence(tmp_path, capsys, files, words):
 
 
 # -- the moving picture of a run: its frames, what they are drawn from, and what is left of one that is stopped ------
-@pytest.mark.parametrize("ending", animation.ENDINGS)
+@pytest.mark.parametrize("ending", [".webp", pytest.param(".gif", marks=pytest.mark.long)])
 def test_animation_has_a_frame_for_each_state(folder, tmp_path, capsys, ending):
     """And some between states, each load at least as many as it is said to have; the last frame stands longest."""
     file = tmp_path / f"run{ending}"

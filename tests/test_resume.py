@@ -177,7 +177,7 @@ def killed_at(monkeypatch):
 
 
 # -- the same numbers ------------------------------------------------------------------------------------
-ALWAYS = ["there and back", "receptors", "receptors over time"]
+ALWAYS = ["receptors", "receptors over time"]
 LONG = [pytest.param(name, marks=pytest.mark.long) for name in HISTORIES if name not in ALWAYS]
 
 

@@ -3,7 +3,6 @@
 import json
 from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,7 +10,7 @@ from numpy.testing import assert_allclose
 
 import fingerpad as fp
 from fingerpad.reduced.cylinders import indentation
-from fingerpad.results.pictures.solid import _strips, footprint, ridges_along, solid
+from fingerpad.results.pictures.solid import _strips, footprint, solid
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.parameters import Slices
 from fingerpad.slices.errors import MESH
@@ -161,17 +160,6 @@ def test_finger_under_another_force_is_read_from_its_traces():
         replace(finger, traces={}).under(0.3)
     with pytest.raises(SceneError, match="the force is 0.0001 N, under which the centre of the finger bears"):
         finger.under(1e-4)
-
-
-@pytest.mark.parametrize("known", [True, False])
-def test_ridges_of_a_slice_have_its_contact_length(known):
-    """Parts add up to one: of ridges within the gross width or else the nearest, with the centre known or not."""
-    number, length = np.array([-2, -1, 0, 1, 2]), np.array([0.0, 1.0, 3.0, 1.0, 0.5])
-    state = SimpleNamespace(ridges=SimpleNamespace(number=number, length=length)) if known else None
-    gross = np.array([0.0, 0.4, 1.1, 1.6])
-    x, parts = ridges_along(state, 0.5, gross)
-    assert parts.sum(axis=0)[1:] == pytest.approx(1.0) and len(x) == (4 if known else 3)
-    assert (parts[:, 2:][np.abs(x)[:, None] > gross[2:] / 2] == 0).all()
 
 
 def test_footprint_has_a_panel_for_each_state(tmp_path):

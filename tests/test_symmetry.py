@@ -16,7 +16,6 @@ from fingerpad.runs import full as run_module
 from fingerpad.scene import from_data
 from geometry import tags
 from geometry.mesh import TaggedMesh
-from tests.measures import rows_of
 from tests.runs import followed, run
 from tests.small_finger import NINE
 from variational.body import Body
@@ -152,20 +151,6 @@ def fingers(tmp_path_factory):
 
 
 @pytest.mark.long
-def test_half_the_finger_has_the_whole_s_tables(fingers):
-    _, (half, whole) = fingers
-    for name in ("ridges", "receptors"):
-        mine, other = rows_of(half, name), rows_of(whole, name)
-        assert list(mine[0]) == list(other[0])
-        last = [[row["ridge"] for row in rows if row["step"] == rows[-1]["step"]] for rows in (mine, other)]
-        assert last[0] == last[1]
-    sed = {row["ridge"]: row for row in rows_of(half, "receptors")}
-    assert sed["1"]["meissner_left"] == sed["-1"]["meissner_right"]
-    assert sed["2"]["merkel_sed"] == sed["-2"]["merkel_sed"]
-    assert {path.name for path in half.iterdir()} == {path.name for path in whole.iterdir()}
-
-
-@pytest.mark.long
 def test_half_the_finger_has_the_whole_s_numbers_and_errors(fingers):
     """Within the air gaps' tolerance of 1e-6: the whole's mesh is the half's and its mirror image.
 
@@ -220,7 +205,7 @@ def follow(history, led: bool) -> Simulation:
     [
         pytest.param(LOADS, id="press, charge, slide"),
         pytest.param([{"name": "lower", "bone_height": -60e-6}, *LOADS[2:]], id="bone height", marks=pytest.mark.mpi),
-        pytest.param([LOADS[0], {"name": "lift", "f_ext": 0.2}, LOADS[1], BRIEF[1]], id="lift"),
+        pytest.param([LOADS[0], {"name": "lift", "f_ext": 0.2}, LOADS[1], BRIEF[1]], id="lift", marks=pytest.mark.long),
     ],
 )
 def test_half_leads_to_the_states_of_the_whole(history):

@@ -68,8 +68,7 @@ def balances(body: Body, history: list[Target]) -> list[Balance]:
 
 # -- energy --------------------------------------------------------------------------------------------
 @pytest.mark.slow
-@pytest.mark.mpi
-@pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.parametrize("seed", [pytest.param(1, marks=pytest.mark.mpi), 2])
 def test_energy_of_random_histories(seed):
     """Work is what is stored, rubbed off and spent on the branches, to 1e-8 of what is stored in each step.
 
@@ -135,7 +134,6 @@ PRESS, HOLD = {"name": "press", "bone_height": -30e-6}, {"name": "hold", "bone_h
 
 
 @pytest.mark.slow
-@pytest.mark.mpi
 def test_held_finger():
     """At a held depth the force falls to that of the elastic law.
 

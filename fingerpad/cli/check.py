@@ -107,27 +107,11 @@ def _verdict(scene: Scene) -> str:
 
 def _loads(scene: Scene) -> Iterator[str]:
     for k, (_, load, moved) in enumerate(ways(scene.loads()), start=1):
-        aims = [*_aims(load)]
+        aims = [*load.aims()]
         if load.wave is not None and load.takes_time:
             seconds = load.seconds(moved or 0.0)
             aims.append(f"{load.wave.count(seconds, scene.numerics.step_scale):.0f} samples over {seconds:.4g} s")
         yield f"{k}. {load.name}: {', '.join(aims)}"
-
-
-def _aims(load: Load) -> Iterator[str]:
-    if load.f_ext is not None:
-        yield f"force to {load.f_ext:g} N/m (per metre of finger)"
-    if load.bone_height is not None:
-        yield f"bone's height to {load.bone_height * 1e3:+g} mm of the unloaded one"
-    if load.voltage is not None:
-        yield f"voltage: {load.wave}" if load.level is None else f"voltage to {load.level:g} V"
-    until = ", or until full slip" if load.until_full_slip else ""
-    if load.bone_x is not None:
-        yield f"bone sideways to {load.bone_x * 1e3:g} mm{until}"
-    if load.bone_x_by is not None:
-        yield f"bone sideways by {load.bone_x_by * 1e3:+g} mm{until}"
-    if load.pace:
-        yield load.pace
 
 
 def _model(scene: Scene, needed: ModelOptions) -> Iterator[str]:

@@ -11,10 +11,9 @@ from fingerpad.report import page as html
 from fingerpad.report import trust
 from fingerpad.report.charts import Panel, Series, bars, chart
 from fingerpad.report.frames import conditions_of, frames
-from fingerpad.results.headline import band_in_words
-from fingerpad.results.over_time import HARMONICS, NOTE, without_parts_of_jumps
-from fingerpad.results.printing import cells
-from fingerpad.results.quantities import BAND, KNOWN, PER_LENGTH, STEPS, in_table, plus_minus_of
+from fingerpad.results.over_time import NOTE, without_parts_of_jumps
+from fingerpad.results.printing import remarks, table, timed
+from fingerpad.results.quantities import KNOWN, STEPS, in_table
 from fingerpad.results.result import Result
 from fingerpad.results.spikes import Spikes
 from fingerpad.results.states import before_sliding, called
@@ -47,14 +46,13 @@ def page(result: Result) -> str:
         "run.html", f"fingerpad: {headline.sentence}", result=result, headline=headline, factor=_factor(result),
         name="" if result.folder is None else result.folder.name, verdict=trust.verdict(found), findings=found,
         sure=_claims(result), bars=bars_of(result), frames=shown, scale=scale, face=face,
-        newtons=None if result.finger is None else result.finger, numbers=_numbers(result), notes=_notes(result),
-        asked=list(_asked(result)), of_path=_of_path(result), per_length=PER_LENGTH,
-        band=band_in_words(result.record.get(BAND, {})), sliding=_sliding(result), over_time=_over_time(result),
+        newtons=None if result.finger is None else result.finger, numbers=table(result), remarks=remarks(result),
+        asked=list(_asked(result)), of_path=_of_path(result), sliding=_sliding(result), over_time=timed(result),
         receptors=_receptors(result), spikes=spikes, raster=None if spikes is None else _raster(result, spikes),
         note=NOTE, refusal=refusal, pictures=[each for each in pictures if each != face], laws=_laws(result),
         model=result.model_words,
         omitted=[f"{each['what']}: {each['reason']}" for each in result.record.get("omitted") or []],
-        work=_work(result), cost=_cost(result), parameters=html.parameters(result.parameters), versions=versions,
+        cost=_cost(result), parameters=html.parameters(result.parameters), versions=versions,
         again=html.recipe(result.parameters, result.model),
     )  # fmt: skip
 
@@ -83,22 +81,8 @@ def bars_of(result: Result) -> Markup:
 def _asked(result: Result) -> Iterator[tuple[str, ...]]:
     """Yield a row for each load: its name, what it changes and, where it was reached, the state at its end."""
     for load in result.scene.loads():
-        given = {
-            "external force": (load.f_ext, 1.0, "N/m"),
-            "bone height": (load.bone_height, _MM, "mm"),
-            "voltage": (load.level, 1.0, "V"),
-            "bone sideways": (load.bone_x, _MM, "mm"),
-        }
-        words = [
-            f"{name} to {value * scale:.4g} {unit}" for name, (value, scale, unit) in given.items() if value is not None
-        ]
-        words += [f"voltage: {load.wave}"] if load.wave is not None else []
-        words += [f"bone sideways by {_MM * load.bone_x_by:+.4g} mm"] if load.bone_x_by is not None else []
-        words += [load.pace] if load.pace else []
-        words += ["ends at full slip"] if load.until_full_slip else []
-        reached = [each.end for each in result.loads if each.name == load.name]
-        at = [f"{conditions_of(end)}{_friction(end)}" for end in reached] or ["–"]
-        yield (load.name, ", ".join(words), *(at[:1] if result.loads else ()))
+        at = [f"{conditions_of(each.end)}{_friction(each.end)}" for each in result.loads if each.name == load.name]
+        yield (load.name, ", ".join(load.aims()), *([at[0] if at else "–"] if result.loads else []))
 
 
 def _friction(end: Any) -> str:
@@ -109,31 +93,6 @@ def _of_path(result: Result) -> bool:
     """Return whether the ends of loads are of the path's mesh, and the named states of another one."""
     final = {state.mesh_contact for state in result.named.values()} - {state.mesh_contact for state in result.steps}
     return bool(final and result.steps)
-
-
-def _numbers(result: Result) -> list[list[str]]:
-    """Return the table of key numbers, its heads first; empty without a named state."""
-    if not result.named:
-        return []
-    every = [[quantity.title, *cells(result, key)] for key, quantity in result.printed.items()]
-    heads = ["", *(called(name, state.voltage) for name, state in result.named.items())]
-    return [heads, *(row for row in every if set(row[1:]) - {"–"})]
-
-
-def _notes(result: Result) -> list[str]:
-    """Return remarks on the key numbers."""
-    slip, notes = result.full_slip, list[str]()
-    if result.whole:
-        notes.append("Each state of the section is under its own part of the force on the whole finger.")
-    if any(state.error.known() for state in result.named.values()):
-        notes.append(plus_minus_of(result.parts()))
-    if slip is not None and not math.isnan(slip.penalty.contact_length):
-        friction = f"µ_app at full slip by {slip.penalty.mu_app:+.2g}"
-        if math.isnan(slip.penalty.mu_app):
-            friction = f"f_T at full slip by {slip.penalty.f_t:+.2g} N/m"
-        length = f"the contact length by {_MM * slip.penalty.contact_length:+.2g} mm"
-        notes.append(f"Contact is a penalty: a rigid screen would change {friction}, and {length}.")
-    return notes
 
 
 def _sliding(result: Result) -> dict[str, Any] | None:
@@ -172,45 +131,15 @@ def _sliding(result: Result) -> dict[str, Any] | None:
     return {"chart": drawn, "heads": ["step", *(each.head for each in shown), "jump"], "rows": rows}
 
 
-def _over_time(result: Result) -> dict[str, Any] | None:
-    """Return extremes, means and the spectrum of friction of loads over time; None without such a load."""
-    f_t, length = STEPS["f_t"], STEPS["contact_length"]
-    rows, spectra = [], []
-    for load in result.loads:
-        passed, friction = load.over_time, load.extremes["f_t"]
-        if passed is None:
-            continue
-        ends = ((friction.min, friction.min_time), (friction.max, friction.max_time))
-        at = (f"{f_t.shown(value)} at {_MS * time:.4g} ms" for value, time in ends)
-        means = (f_t.shown(passed.mean["f_t"]), *at, length.shown(passed.mean["contact_length"]))
-        rows.append((load.name, f"{_MS * passed.seconds:.4g}", *means))
-        largest = sorted(zip(passed.f_t_amplitude, passed.frequency, strict=True), reverse=True)[:HARMONICS]
-        amplitudes = sorted((frequency, value) for value, frequency in largest)
-        spectra += [(load.name, f"{frequency:.4g}", f_t.shown(value)) for frequency, value in amplitudes]
-    friction_heads = (f"{end} {f_t.head}" for end in ("mean", "least", "largest"))
-    heads = ("load", "length (ms)", *friction_heads, f"mean {length.head}")
-    spectrum = ("load", "frequency (Hz)", f"amplitude of {f_t.head}")
-    return {"heads": heads, "rows": rows, "spectrum": spectrum, "spectra": spectra} if rows else None
-
-
-def _receptors(result: Result) -> dict[str, Any] | None:
-    """Return the largest densities of each named state and those at every ridge; None where a run has none."""
-    named = {called(name, state.voltage): state.sites for name, state in result.named.items()}
-    found = {words: sites for words, sites in named.items() if sites is not None and len(sites.number)}
-    if not found:
-        return None
-    kinds = {
-        "a Merkel site": {words: _KPA * sites.merkel for words, sites in found.items()},
-        "a Meissner site": {words: _KPA * np.maximum(sites.left, sites.right) for words, sites in found.items()},
-    }
-    rows = [(f"largest at {site}", *(f"{each.max():.4g}" for each in kind.values())) for site, kind in kinds.items()]
-    merkel = kinds["a Merkel site"].values()
-    of = (str(int(sites.number[values.argmax()])) for sites, values in zip(found.values(), merkel, strict=True))
-    rows.insert(1, ("of the ridge", *of))
-    cells = [[f"{value:.4g}" for value in values] for kind in kinds.values() for values in kind.values()]
-    every = list(zip(map(str, next(iter(found.values())).number), *cells, strict=True))
-    heads = ("ridge", *(f"{site}, {words}" for site in ("Merkel", "larger Meissner") for words in found))
-    return {"heads": ("", *found), "rows": rows, "every": heads, "ridges": every}
+def _receptors(result: Result) -> list[tuple[str, ...]]:
+    """Return a row for each named state: the largest densities at Merkel sites, with its ridge, and Meissner sites."""
+    rows = []
+    for name, state in result.named.items():
+        if (sites := state.sites) is not None and len(sites.number):
+            merkel, meissner = _KPA * sites.merkel, _KPA * np.maximum(sites.left, sites.right)
+            ridge = str(int(sites.number[merkel.argmax()]))
+            rows.append((called(name, state.voltage), f"{merkel.max():.4g}", ridge, f"{meissner.max():.4g}"))
+    return rows
 
 
 def _spikes(result: Result) -> tuple[Spikes | None, str]:
@@ -259,29 +188,6 @@ def _pictures(result: Result) -> Iterator[tuple[str, str, str]]:
 def _laws(result: Result) -> list[tuple[str, str]]:
     laws = result.record.get("laws") or {}
     return [(name.replace("_", " "), law) for name, law in laws.items()] if isinstance(laws, dict) else []
-
-
-def _work(result: Result) -> Markup:
-    """Return the chart of the solver's work over the steps; empty where it is not known."""
-    steps = [state for state in result.steps if state.record is not None]
-    if not steps:
-        return Markup()
-    x, loads = [state.step for state in steps], [state.load for state in steps]
-    series = [
-        Series(words, x, [getattr(state.record, key) for state in steps], "bars", colour, labels=loads)
-        for words, key, colour in (
-            ("Newton iterations", "newton_iterations", "blue"),
-            ("factorisations",) * 2 + ("vermilion",),
-        )
-    ]
-    cut = [state for state in steps if state.record is not None and state.record.cutbacks]
-    if cut:
-        words = [f"cut {state.record.cutbacks} times" for state in cut if state.record is not None]
-        series.append(
-            Series("cut step", [state.step for state in cut], [0.0] * len(cut), "points", "ink", labels=words)
-        )
-    words = "Newton iterations, factorisations and cut steps over the steps"
-    return chart([Panel("number (–)", series)], "step", words)
 
 
 def _cost(result: Result) -> list[tuple[str, str]]:

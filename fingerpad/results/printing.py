@@ -18,9 +18,9 @@ def text(result: ResultData, headline: str) -> str:
     """Return the text *Result* at the end of a run: headline, whole finger, and named states with units and errors."""
     lines = [_title(result)]
     if result.named:
-        heads, rows = _table(result)
+        heads, rows = table(result)
         lines += notebook.side_by_side([*notebook.head_rows(heads[1:]), *rows])
-    lines += [f"  {note}" for note in (*_timed(result), *_remarks(result))]
+    lines += [f"  {note}" for note in (*timed(result), *remarks(result))]
     lines += [f"  ! {caution}" for caution in result.cautions]
     finger = [f"{result.finger}"] if result.finger is not None else []
     return "\n".join([headline, *finger, *lines])
@@ -30,10 +30,10 @@ def page(result: ResultData, headline: str) -> str:
     """Return the same for a notebook, with remarks to unfold."""
     title, *known = map(str.strip, headline.splitlines())
     parts = [] if result.finger is None else [result.finger._repr_html_()]
-    parts += [notebook.page(_title(result), notebook.table(*_table(result)))] if result.named else []
+    parts += [notebook.page(_title(result), notebook.table(*table(result)))] if result.named else []
     cautions = notebook.lines(f"! {each}" for each in result.cautions)
-    remarks = notebook.folded("Remarks", [*_timed(result), *_remarks(result)])
-    return notebook.page(title, notebook.lines(known), *parts, cautions, remarks)
+    folded = notebook.folded("Remarks", [*timed(result), *remarks(result)])
+    return notebook.page(title, notebook.lines(known), *parts, cautions, folded)
 
 
 def _title(result: ResultData) -> str:
@@ -41,7 +41,7 @@ def _title(result: ResultData) -> str:
     return ("Result" if result.finger is None else _SECTION) + model
 
 
-def _table(result: ResultData) -> tuple[list[str], list[list[str]]]:
+def table(result: ResultData) -> tuple[list[str], list[list[str]]]:
     """Return the heads and the rows of the named states side by side, the first of which are words."""
     shown = result.named
     values = ((quantity.title, cells(result, key)) for key, quantity in result.printed.items())
@@ -61,13 +61,13 @@ def cells(result: ResultData, key: str) -> list[str]:
     return shown
 
 
-def _timed(result: ResultData) -> list[str]:
+def timed(result: ResultData) -> list[str]:
     """Return a line for each load over time."""
     least = result.record.get("force_error") or 0.0
     return [_in_time(load, least) for load in result.loads if load.over_time is not None]
 
 
-def _remarks(result: ResultData) -> list[str]:
+def remarks(result: ResultData) -> list[str]:
     """Return the lines after the table: failure, missing full slip, meaning of ± and N/m, effect of the penalty."""
     found = [f"Not finished: {result.failure}"] if result.failure else []
     if (how := result.missing_slip) and not result.failure:

@@ -135,6 +135,22 @@ class Load(Table):
                 )
         return self
 
+    def aims(self) -> Iterator[str]:
+        """Yield in words what the load changes."""
+        if self.f_ext is not None:
+            yield f"force to {self.f_ext:g} N/m (per metre of finger)"
+        if self.bone_height is not None:
+            yield f"bone's height to {self.bone_height * 1e3:+g} mm of the unloaded one"
+        if self.voltage is not None:
+            yield f"voltage: {self.wave}" if self.level is None else f"voltage to {self.level:g} V"
+        until = ", or until full slip" if self.until_full_slip else ""
+        if self.bone_x is not None:
+            yield f"bone sideways to {self.bone_x * 1e3:g} mm{until}"
+        if self.bone_x_by is not None:
+            yield f"bone sideways by {self.bone_x_by * 1e3:+g} mm{until}"
+        if self.pace:
+            yield self.pace
+
     @property
     def wave(self) -> Waveform | None:
         """The voltage over time; None where it is a number or stays."""
