@@ -96,7 +96,7 @@ class Skin:
             raise StepFailed("not found")
         u = conditions.voltage
         ridges = 3 if u < 60 else 5 if u > 80 else start.state.ridges_in_contact
-        return self._found(conditions, ridges, f"full slip from {start.conditions.beside(conditions)}")
+        return self._found(conditions, ridges, f"full slip from {start.conditions.difference(conditions)}")
 
 
 def followed(monkeypatch, skin, voltages):
