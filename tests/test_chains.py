@@ -14,9 +14,9 @@ from fingerpad.accuracy.states import Solve
 from fingerpad.model.full_slip import Solved
 from fingerpad.results.data import Cost
 from fingerpad.results.result import Result
-from fingerpad.runs import chains as of_sweep
+from fingerpad.runs import batch as of_sweep
 from fingerpad.runs import full_slip
-from fingerpad.runs.chains import chains
+from fingerpad.runs.batch import chains
 from fingerpad.runs.full_slip import Chain, Fine
 from fingerpad.runs.sweep import _neighbours
 from fingerpad.runs.sweep_columns import OTHER
