@@ -14,9 +14,9 @@ from fingerpad.accuracy.states import Solve
 from fingerpad.model.full_slip import Solved
 from fingerpad.results.data import Cost
 from fingerpad.results.result import Result
-from fingerpad.runs import chains as of_sweep
+from fingerpad.runs import batch as of_sweep
 from fingerpad.runs import full_slip
-from fingerpad.runs.chains import chains
+from fingerpad.runs.batch import chains
 from fingerpad.runs.full_slip import Chain, Fine
 from fingerpad.runs.sweep import _neighbours
 from fingerpad.runs.sweep_columns import OTHER
@@ -96,7 +96,7 @@ class Skin:
             raise StepFailed("not found")
         u = conditions.voltage
         ridges = 3 if u < 60 else 5 if u > 80 else start.state.ridges_in_contact
-        return self._found(conditions, ridges, f"full slip from {start.conditions.beside(conditions)}")
+        return self._found(conditions, ridges, f"full slip from {start.conditions.difference(conditions)}")
 
 
 def followed(monkeypatch, skin, voltages):

@@ -13,14 +13,7 @@ pytestmark = pytest.mark.slow
 CASES = [case for cases in AREAS.values() for case in cases]
 
 
-LONG = ("Convergence of the contact pressure",)
-
-
-@pytest.mark.parametrize(
-    "case",
-    [pytest.param(case, marks=pytest.mark.long) if case.name in LONG else case for case in CASES],
-    ids=lambda case: case.name,
-)
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 def test_case(case):
     """Every number is within the tolerance that its row explains."""
     rows = case.rows(True)

@@ -187,7 +187,6 @@ def draw(docs: Path) -> Path:
         "pull": _pull,
         "reaches": _reaches, "inside": sum(inside), "known_pairs": inside,
         "least_voltage": min(u for u in needed if u), "most_voltage": max(u for u in needed if u),
-        "tips": harness.kept("measured", docs).numbers["others"]["gap"]["numbers"],
         "flat": lambda found: Scene().friction * (1 + found["attraction"] / contacts.P_EXT),
         "broken": [part for found in numbers["closures"].values() for part in found["broken"]],
         "first_off": deformed[0], "area_error": areas[min(areas)] / areas[max(areas)],

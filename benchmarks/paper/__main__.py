@@ -1,4 +1,4 @@
-"""The paper's statements on friction, contact and energy density, beside what this model computes.
+"""The printed numbers of the paper and its central claim, beside what this model computes.
 
 environment/run python3 -m benchmarks.paper [--jobs 2] [--draw]
 
@@ -19,7 +19,7 @@ import numpy as np
 from benchmarks import newtons
 from benchmarks.errors import known
 from benchmarks.harness import cells, keep, kept, made, main, page, run
-from benchmarks.paper import energy, fields, friction, scenes, states
+from benchmarks.paper import fields, friction, scenes, states
 from benchmarks.paper.figures import FIGURES
 from benchmarks.paper.figures import draw as drawn
 from benchmarks.paper.statement import BUILT, HOLDS, IN_PART, NOT, Statement
@@ -33,11 +33,9 @@ def collect(out: Path) -> dict[str, Any]:
     runs = {pair: Run(scene, out) for pair, scene in scenes.grid().items()}
     gathered, high = friction.gather(runs), runs[scenes.MAP, 200.0]
     statements = [
-        *fields.section(runs[scenes.SECTION], Run(scenes.stiffer(), out)),
         *fields.microscale(),
-        *friction.statements(gathered, friction.paths(runs), known()["full_slip_mu_app"]),
-        *energy.maps(runs[scenes.MAP, 0.0], high),
-        *fields.sine(Run(scenes.sine(), out)),
+        *friction.statements(gathered, known()["full_slip_mu_app"]),
+        fields.sine(Run(scenes.sine(), out)),
         fields.claim(high, Run(scenes.rougher(friction.mu_app(high)), out)),
     ]
     seconds = [float(run.summary["processor_seconds"]) for run in runs.values()]
@@ -48,7 +46,7 @@ def collect(out: Path) -> dict[str, Any]:
 def compute(args: argparse.Namespace) -> None:
     """Run what is missing and keep its numbers."""
     named = {f"{f:g} N/m, {u:g} V": scene for (f, u), scene in scenes.grid().items()}
-    summaries = run(named | {"sine": scenes.sine(), "stiffer": scenes.stiffer()}, args, _LIMIT)
+    summaries = run(named | {"sine": scenes.sine()}, args, _LIMIT)
     high = Run(scenes.grid()[scenes.MAP, 200.0], args.out)
     summaries |= run({"friction": scenes.rougher(friction.mu_app(high))}, args, _LIMIT)
     by = made(summaries.values())

@@ -40,12 +40,6 @@ def sine() -> Scene:
     return plain({"history": history} | _PATH)
 
 
-def stiffer() -> Scene:
-    """Return Fig. 2's normal contact, where points that stick yield by a twentieth of the default."""
-    history = [{"name": "press", "f_ext": SECTION[0]}, {"name": "charge", "voltage": SECTION[1]}]
-    return plain({"contact": {"eps_t": 20 * Scene().contact.eps_t}, "history": history} | _PATH)
-
-
 def rougher(mu_app: float) -> Scene:
     """Return the scene of section 5's claim: no voltage, and the friction coefficient that voltage led to."""
     return plain({"f_ext": MAP, "voltage": 0.0, "friction": round(mu_app, 4)} | _PATH)

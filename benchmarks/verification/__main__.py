@@ -21,19 +21,17 @@ from benchmarks.verification import (
     microscale,
     normal_contact,
     relaxing,
-    rollers,
     rough,
     slices,
     spikes,
-    tube,
 )
 from benchmarks.verification.case import Case, Row, draw, numbers
 
 AREAS: dict[str, tuple[Case, ...]] = {
-    "Constitutive": constitutive.CASES + tube.CASES,
+    "Constitutive": constitutive.CASES,
     "Discretisation": discretisation.CASES + cook.CASES,
     "Viscosity": relaxing.CASES,
-    "Normal contact": normal_contact.CASES + rollers.CASES,
+    "Normal contact": normal_contact.CASES,
     "Friction": friction.CASES,
     "Adhesion": adhesion.CASES,
     "Circuit": electric.CASES,

@@ -1,9 +1,4 @@
-r"""Attraction: pull-in of a plate, and adhesive contact of a cylinder.
-
-A flat block is a spring of stiffness E / H per area, a plate over the screen: at rest at :math:`s_0 = h_0 + g_0` it is
-pulled in by :math:`U^2 = 8 E s_0^3 / (27 \varepsilon_0 H)`, after a travel of s_0 / 3 (Nathanson, Newell, Wickstrom and
-Davis 1967, doi 10.1109/T-ED.1967.15912). There the least eigenvalue of the tangent vanishes with the root of what
-:math:`U^2` lacks, so pull-in is extrapolated.
+r"""Attraction: adhesive contact of a cylinder.
 
 The law (Dugdale's; Forsbach et al. 2023, Eq. 10) has the strength and the work of adhesion of the electrostatic
 attraction without an air gap, :math:`w = \sigma_0 h_0`: :math:`p_{el} = \sigma_0 = \varepsilon_0 U^2 / (2 h_0^2)` at
@@ -23,51 +18,16 @@ import numpy as np
 import ufl
 from scipy.optimize import brentq, minimize_scalar
 
-from benchmarks.verification.bodies import Smooth, formulations, over_screen
+from benchmarks.verification.bodies import formulations, over_screen
 from benchmarks.verification.case import Case, Row
-from geometry.bodies import block, pad
+from geometry.bodies import pad
 from variational.attraction.dielectric import VACUUM_PERMITTIVITY
 from variational.attraction.electroadhesion import Attraction
 from variational.contact.interface import Interface
-from variational.contact.penalty import Penalty
 from variational.materials.saint_venant import SaintVenant
 from variational.solvers.continuation import Target
-from variational.solvers.stability import StabilityCheck
-
-_H_0 = 0.514e-6
-_CONTACT = Penalty(1e12, 1e11)
 
 
-def actuator(small: bool) -> list[Row]:
-    """Raise the voltage of a block over the screen until its tangent is singular."""
-    young, height, width, gap = 4e6, 2e-3, 0.5e-3, 1e-6
-    rest = _H_0 + gap
-    exact = float(np.sqrt(8 * young * rest**3 / (27 * VACUUM_PERMITTIVITY * height)))
-    build, solid = block(width, height, width / 2, gap=gap), SaintVenant(young, 0.0)
-    run = over_screen(build, solid, Interface(_CONTACT, 0.0, _H_0), 1e-2, sides_held=True, closure=Smooth(1e-7))
-    check = StabilityCheck(run.solver)
-    square, least, y = [], [], []
-    aim = 10.0**2
-    for _ in range(7):
-        run.run(Target("charge", voltage=float(np.sqrt(aim))))
-        square.append(aim)
-        least.append(check.check().lambda_min)
-        y.append(float(run.surface_state.y.mean()))
-        if len(square) == 1:
-            aim = 12.0**2
-            continue
-        fold = square[-1] + least[-1] ** 2 * (square[-1] - square[-2]) / (least[-2] ** 2 - least[-1] ** 2)
-        aim = (square[-1] + fold) / 2  # from afar the fold looks too far
-    fold = float(np.polyval(np.polyfit(np.array(least[-3:]) ** 2, square[-3:], 1), 0.0))
-    low = float(np.polyval(np.polyfit(least[-3:], y[-3:], 2), 0.0))
-    why, mesh = "the strain at pull-in, 3e-4, in which the solid is not linear", "32 P2 triangles"
-    return [
-        Row("travel at pull-in over h_0 + g_0", (gap - low) / rest, 1 / 3, 1e-3, why, mesh),
-        Row("voltage of pull-in (V)", float(np.sqrt(fold)), exact, 1e-3, why, mesh),
-    ]
-
-
-# -- cylinder under a constant attraction --
 def constant_attraction(ramp: float) -> Attraction:
     """Return the law; ``ramp`` is delta, half the width of its fall over its range."""
 
@@ -138,7 +98,4 @@ def maugis(small: bool) -> list[Row]:
 
 
 _LINE = "Johnson and Greenwood 2008, doi 10.1088/0022-3727/41/15/155315, closed form"
-CASES = (
-    Case("Parallel-plate actuator", "Nathanson et al. 1967, doi 10.1109/T-ED.1967.15912", actuator),
-    Case("Maugis-Dugdale line contact", _LINE, maugis),
-)
+CASES = (Case("Maugis-Dugdale line contact", _LINE, maugis),)

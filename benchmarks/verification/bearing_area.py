@@ -97,8 +97,3 @@ def threshold(beta: Number = 1) -> Number:
         return contact_pressure(x * H_RMS, beta) * 2 * H_0**2 / (EPS_0 * attracted(x * H_RMS))
 
     return _MP.sqrt(squared(_MP.findroot(lambda x: _MP.diff(lambda y: _MP.log(squared(y)), x), 2)))
-
-
-def estimated_threshold() -> Number:
-    """Return the voltage (V) of Eq. 15."""
-    return _MP.mpf("1.8") * H_RMS * _MP.sqrt(H_0 * 4 * YOUNG / 3 / (EPS_0 * WAVELENGTH))

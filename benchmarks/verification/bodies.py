@@ -31,10 +31,8 @@ from variational.solvers.newton import Solver
 
 Array = NDArray[np.float64]
 Dofs = NDArray[np.int32]
-Held = tuple[Dofs, float]
 DEGREES = {"P1": 1, "P2": 2, "P2-P1": 2, "P3": 3}  # of the displacement, by element
 Errors = tuple[float, float]  # in L2 and H1
-NOTHING = np.empty(0, dtype=np.int32)  # facets of the bone's rim
 
 
 # -- over the screen -----------------------------------------------------------------------------------
@@ -96,11 +94,6 @@ def free_problem(made: TaggedMesh, solids: Mapping[int, Material], element: str)
     return Body(made, solids, Interface(Penalty(0.0, 1e11), 0.0, 1e-6), element=element).problem
 
 
-def nodal_forces(problem: Problem) -> Array:
-    """Return the forces (N/m) that hold the nodes in the problem's state, shape (nodes, 2)."""
-    return np.asarray(fem.assemble_vector(problem.residual).array.reshape(-1, 2))
-
-
 class FreeEquations(Equations):
     """Those of a body that need not have a bone."""
 
@@ -114,10 +107,8 @@ class FreeEquations(Equations):
 class FreeSolver(Solver):
     """A solver of a body that need not have a bone, with dead loads on its nodes."""
 
-    def __init__(
-        self, problem: Problem, rim: Dofs, force_scale: float, tolerance: float = 1e-9, fixed: Sequence[Held] = ()
-    ) -> None:
-        super().__init__(FreeEquations(problem, rim, fixed), force_scale, tolerance)
+    def __init__(self, problem: Problem, rim: Dofs, force_scale: float, tolerance: float = 1e-9) -> None:
+        super().__init__(FreeEquations(problem, rim), force_scale, tolerance)
 
     def set_load(self, form) -> None:
         """Apply the nodal forces of a linear form, UFL, but in prescribed rows."""

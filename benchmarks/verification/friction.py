@@ -1,4 +1,4 @@
-r"""Coulomb friction: full slip and partial slip of a cylinder.
+r"""Coulomb friction: partial slip of a cylinder.
 
 Cattaneo and Mindlin (Johnson, Contact Mechanics, 1985, sec. 7.2(a), doi 10.1017/CBO9781139171731): a cylinder under
 the normal force P that is then pushed sideways by Q < mu P sticks for |x| < c and bears
@@ -14,44 +14,14 @@ bottom, f / (E* 300 a), is felt as a shear of 1 % of mu p_0.
 
 import numpy as np
 
-from benchmarks.verification.bodies import Array, Smooth, formulations, over_screen
-from benchmarks.verification.case import IDENTITY, Case, Row
-from geometry.bodies import pad, ridge
-from variational.contact.augmented import AugmentedLagrangian
-from variational.contact.formulation import Formulation
+from benchmarks.verification.bodies import Array, formulations, over_screen
+from benchmarks.verification.case import Case, Row
+from geometry.bodies import pad
 from variational.contact.interface import Interface
-from variational.contact.nitsche import Nitsche
-from variational.contact.penalty import Penalty
 from variational.materials.ogden import Ogden
 from variational.solvers.continuation import Continuation, Target
 
 _H_0 = 0.514e-6
-
-
-def full_slip(small: bool) -> list[Row]:
-    """One ridge of skin under 100 V, dragged to full slip and 0.2 mm further."""
-    mu_f, force, mesh = 0.25, 5.0, "P2, facets of 20 um"
-    ways: dict[str, Formulation] = {"penalty": Penalty(1.5e12, 5e10)}
-    ways |= {f"Nitsche {theta}": Nitsche(10.0, theta) for theta in ((0,) if small else (0, 1, -1))}
-    ways |= {} if small else {"augmented Lagrangian": AugmentedLagrangian(1.5e13, 5e11, 5e-10)}
-    rows = []
-    for name, formulation in ways.items():
-        skin, interface = Ogden(86.76e3, -14.53, 0.48), Interface(formulation, mu_f, _H_0)
-        run = over_screen(ridge(20e-6), skin, interface, force, closure=Smooth(2e-6))
-        run.run(Target("press", f_ext=force))
-        run.run(Target("charge", voltage=100.0))
-        for x in (10e-6, 20e-6, 30e-6, 45e-6, 0.4e-3):
-            run.run(Target("slide", bone_x=x, until_full_slip=True))
-        first = -run.solver.reaction[0]
-        run.run(Target("slide on", bone_x=run.solver.control.x + 0.2e-3))
-        f_t, f_c = -run.solver.reaction[0], float(run.observer.ridge_loads(run.surface_state).f_contact[0])
-        why = "asked for: the law, to the nodal imbalances of the solve"
-        rows.append(Row(f"f_T at full slip over mu_0 f_c, {name}", f_t / (mu_f * f_c), 1.0, 1e-6, why, mesh))
-        same = 1e-6
-        if isinstance(formulation, AugmentedLagrangian):
-            same, why = 1e-5, "multipliers end at 0.5 nm, over which the attraction beside the contact changes by 4e-4"
-        rows.append(Row(f"f_T after 0.2 mm more, over that, {name}", f_t / first, 1.0, same, why, mesh))
-    return rows
 
 
 SHEAR_MODULUS, NU, RADIUS, HALF_WIDTH, MU_F = 1e6 / 3, 0.499, 1.0, 0.5e-3, 0.5
@@ -109,9 +79,5 @@ def partial_slip(small: bool) -> list[Row]:
     return widths + shears
 
 
-_COULOMB = "Coulomb's law: f_T is mu_0 times the contact force, wherever the plane is"
 _CATTANEO = "Cattaneo 1938, Mindlin 1949, in Johnson 1985, sec. 7.2(a), doi 10.1017/CBO9781139171731"
-CASES = (
-    Case("Full slip", _COULOMB, full_slip, IDENTITY),
-    Case("Partial slip", _CATTANEO, partial_slip),
-)
+CASES = (Case("Partial slip", _CATTANEO, partial_slip),)

@@ -1,4 +1,4 @@
-r"""Layers that relax: a block and a ridge that are pressed at once and then held, with the mouse's set of branches.
+r"""A layer that relaxes: a block that is pressed at once and then held, with the mouse's set of branches.
 
 The set is :math:`G(t) / G(0) = 0.351 + 0.154\, e^{-t / 1.111 s} + 0.495\, e^{-t / 0.092 s}` (skin in compression,
 behind doi 10.1371/journal.pone.0120897). **A block** between frictionless sides, at a stretch s that is held, bears
@@ -6,8 +6,6 @@ behind doi 10.1371/journal.pone.0120897). **A block** between frictionless sides
 .. math:: p(t) = -K (s - 1) - \left[ P_2(s) - K (s - 1) \right] \frac{G(t)}{G(\infty)}
 
 with the long-time stress P_2 of Ogden's law in principal stretches (:mod:`.constitutive`) and the bulk modulus K.
-**A ridge** that is
-nearly incompressible has in all places a stress that falls as G(t), so its contact stays and its force falls so too.
 """
 
 import numpy as np
@@ -15,7 +13,7 @@ import numpy as np
 from benchmarks.verification import constitutive
 from benchmarks.verification.bodies import over_screen
 from benchmarks.verification.case import Case, Row
-from geometry.bodies import block, ridge
+from geometry.bodies import block
 from variational.contact.interface import Interface
 from variational.contact.nitsche import Nitsche
 from variational.materials.ogden import Ogden
@@ -60,27 +58,5 @@ def held_block(small: bool) -> list[Row]:
     return rows
 
 
-def held_ridge(small: bool) -> list[Row]:
-    """Force of a ridge, over that at once."""
-    law, size = Viscoelastic(Ogden(_SHEAR, _ALPHA, 0.4999), _BRANCHES), 40e-6 if small else 20e-6
-    run = over_screen(ridge(size), law, Interface(Nitsche(10.0, 0), 0.0, 1e-6), 1.0, element="P2-P1", touch_depth=1e-6)
-    first, *others = _held(run, 30e-6)
-    why = "volume, some 1 - 2 nu times the exponent; steps of the hold"
-    return [
-        Row(
-            f"force after {t:g} s over that at once",
-            force / first,
-            _left(t),
-            3e-3,
-            why,
-            f"P2-P1, facets of {1e6 * size:g} µm",
-        )
-        for t, force in zip(_TIMES, others, strict=True)
-    ]
-
-
 _SET = "relaxation of the set in closed form"
-CASES = (
-    Case("Block that is held", f"{_SET}; Ogden 1984 in principal stretches", held_block),
-    Case("Ridge that is held", _SET, held_ridge),
-)
+CASES = (Case("Block that is held", f"{_SET}; Ogden 1984 in principal stretches", held_block),)

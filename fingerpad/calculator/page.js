@@ -189,7 +189,7 @@
       (goal ? (reached ? " Line: the target." : " The target is not reached on this map.") : "");
   }
 
-  const picked = ({ field }, v) => String(field.whole ? Math.round(v) : Number(v.toPrecision(3)));
+  const picked = ({ field }, v) => String(Number(v.toPrecision(3)));
 
   // -- all of it -----------------------------------------------------------------------------------------
   function update() {
@@ -244,7 +244,7 @@
   function begin() {
     document.documentElement.className = "js";
     form.options("quantity", { mu_app: "friction coefficient µ_app", f_t: "friction force" });
-    for (const id of ["x", "y"]) form.options(id, Object.fromEntries(fields.filter(({ whole }) => !whole).map(({ key, words }) => [key, words])));
+    for (const id of ["x", "y"]) form.options(id, Object.fromEntries(fields.map(({ key, words }) => [key, words])));
     form.make(texts, (soon) => (soon ? later() : update()));
     find("fields").onsubmit = (event) => event.preventDefault();
     const tell = (text) => { find("done").textContent = text; };

@@ -52,13 +52,7 @@ def examine(kind: str, *of: object) -> list[Caution]:
 
 
 def on_scene(scene: Scene, states: Iterable[ContactState] = (), gaps: Iterable[Gap] = ()) -> list[Caution]:
-    """Return the cautions on a scene, on states of it, and on gaps in which air breaks down.
-
-    Args:
-        scene: of the states.
-        states: in any order.
-        gaps: of states without ridges.
-    """
+    """Return the cautions on a scene, on states of it in any order, and on gaps of states without ridges."""
     states, found = list(states), examine("scene", scene)
     found += on_states(states, scene.closure(), scene.contact.law) if states else []
     return found + examine("gap", scene, states, gaps)
@@ -67,11 +61,11 @@ def on_scene(scene: Scene, states: Iterable[ContactState] = (), gaps: Iterable[G
 def on_states(
     states: Iterable[ContactState], closure: Closure | None, formulation: Formulation | None = None
 ) -> list[Caution]:
-    """Return the cautions on states of a body.
+    """Return the cautions on states of a body, in any order.
 
     Args:
-        states: in any order; those without contact have none, and those without a voltage none on the closure.
-        closure: from a ridge's pressure to its air gap; without it there are none on it.
+        states: those without contact have none, and those without a voltage none on the closure.
+        closure: from a ridge's pressure to its air gap; None of a body without a voltage.
         formulation: of the contact, which has the remedy against deep skin; None of states without a mesh.
     """
     return examine("state", list(states), closure, formulation)
@@ -145,10 +139,6 @@ def adhering(state: ContactState | None, closure: Closure | None) -> str:
     """Return which ridge of a state adheres without a load, or is about to come down or let go; empty for none.
 
     Below the voltage from which a flat ridge adheres the closure may have folds already, where a path can be lost.
-
-    Args:
-        state: the last one that was found.
-        closure: from a ridge's pressure to its air gap.
     """
     if closure is None or state is None or state.ridges is None:
         return ""
@@ -158,25 +148,19 @@ def adhering(state: ContactState | None, closure: Closure | None) -> str:
     words, most = sticking(closure, state.voltage), _most_attracted(state)
     if not words and not folded:
         return ""
+    by = f": {words}" if words else ""
     if most is not None and most[1] >= 0:
-        return f"ridge {most[0]} adheres without a load {at}{f': {words}' if words else ''}; take a smaller voltage"
+        return f"ridge {most[0]} adheres without a load {at}{by}; take a smaller voltage"
     if folded:
-        k = max(folded, key=lambda k: ridges.f_contact[k])
-        name = type(closure).__name__
-        by = f": {words}" if words else f" of the closure {name}, where it comes down or lets go at once"
-        return f"ridge {ridges.number[k]} is past the fold {at}{by}; take a smaller voltage or another roughness.law"
+        number = ridges.number[max(folded, key=lambda k: ridges.f_contact[k])]
+        by = by or f" of the closure {type(closure).__name__}, where it comes down or lets go at once"
+        return f"ridge {number} is past the fold {at}{by}; take a smaller voltage or another roughness.law"
     nearest = at if most is None else f"ridge {most[0]} is nearest to adhering without a load {at}:"
     return f"{nearest} {words}; take a smaller voltage or another roughness.law"
 
 
 def lost(error: Exception | str, state: ContactState | None, closure: Closure | None) -> str:
-    """Return why a state was not found: the words of a failure, and the ridge of a state before it that adheres.
-
-    Args:
-        error: the failure.
-        state: see :func:`adhering`.
-        closure: from a ridge's pressure to its air gap.
-    """
+    """Return why a state was not found: the words of a failure, and the ridge of the state before that adheres."""
     return "; ".join(filter(None, (str(error), adhering(state, closure))))
 
 
@@ -185,10 +169,6 @@ def _without_slip(result: ResultData, states: Sequence[ContactState]) -> Iterato
     wanted = any(load.until_full_slip for load in result.scene.loads()) and not result.failure
     if wanted and result.full_slip is None and states and (words := adhering(states[-1], result.scene.closure())):
         yield Caution("no_full_slip", f"full slip was not reached, or not held: {words}", states[-1].voltage)
-
-
-def _long_steps(result: ResultData, _: object) -> list[Caution]:
-    return long_steps(result.loads, result.record.get("force_error", 0.0))
 
 
 def _without_load(states: Sequence[ContactState], closure: Closure | None, _: object) -> Iterator[Caution]:
@@ -231,22 +211,17 @@ def _breakdown_ahead(scene: Scene) -> list[Caution]:
     return _breakdown(found)
 
 
-def _breakdown_in_states(scene: Scene, states: Sequence[ContactState], _: object = ()) -> list[Caution]:
-    """Return the caution on the ridge in contact in whose gap air is the farthest beyond breakdown, with the instant.
+def _breakdown_in_gaps(scene: Scene, states: Sequence[ContactState], gaps: Iterable[Gap] = ()) -> list[Caution]:
+    """Return the caution on the gap in which air is the farthest beyond breakdown, with the instant.
 
-    States without a voltage or values by ridge have none.
+    Gaps are given, and those of ridges in contact in charged states.
     """
-    charged = [state for state in states if state.voltage and state.ridges is not None]
-    return _breakdown([*_instants(scene, charged), *_periods(scene, charged)])
-
-
-def _breakdown_in_gaps(scene: Scene, _: object, gaps: Iterable[Gap] = ()) -> list[Caution]:
-    """Return the caution on the gap in which air is the farthest beyond breakdown."""
-    drive, h_0 = scene.drive, scene.h_0
-    return _breakdown(
-        (name, gap, abs(voltage) * gap / (gap + h_0)) if drive is None else _over_period(drive, name, gap)
-        for name, gap, voltage in gaps
+    drive, charged = scene.drive, [state for state in states if state.voltage and state.ridges is not None]
+    of = (
+        (name, gap, abs(u) * gap / (gap + scene.h_0)) if drive is None else _over_period(drive, name, gap)
+        for name, gap, u in gaps
     )
+    return _breakdown([*_instants(scene, charged), *_periods(scene, charged), *of])
 
 
 def _breakdown(points: Iterable[_Across]) -> list[Caution]:
@@ -317,8 +292,11 @@ CHECKS: dict[str, list[Callable[..., Iterable[Caution]]]] = {
     "law": [lambda scene: scene.contact.law.cautions()],  # of a scene, before a run
     "load": [_breakdown_ahead],  # of a scene, before a run
     "state": [_without_load, _beyond_closure, _deep, _made_energy],  # of states, closure and formulation
-    "gap": [_breakdown_in_states, _breakdown_in_gaps],  # of a scene, its states, and gaps of states without ridges
-    "result": [_long_steps, _without_slip],  # of a result of the full model, and its states
+    "gap": [_breakdown_in_gaps],  # of a scene, its states, and gaps of states without ridges
+    "result": [
+        lambda of, _: long_steps(of.loads, of.record.get("force_error", 0.0)),
+        _without_slip,
+    ],  # of it, its states
     "note": [*remarks.NOTES],  # of a scene; what a result has as notes
 }
 """What limits of validity are examined: by kind, and each as arguments of :func:`examine` by its comment."""

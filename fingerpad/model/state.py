@@ -29,14 +29,14 @@ def contact_state(
     notes: Sequence[str] = (),
     **more: Any,
 ) -> ContactState:
-    """Return the present state.
+    """Return the present state of a path, and of the ridges that can touch.
 
     Args:
         path: that is in the state.
-        loads: resultants of the ridges that can touch.
+        loads: resultants of the ridges.
         ridges: their numbers.
         d_eq: their air gaps (m), shape (ridges,).
-        notes: remarks on their places on the closure, mostly empty.
+        notes: on their places on the closure, mostly empty.
         **more: further attributes of the state.
     """
     solver, (slipping, all_slip) = path.solver, path.slip
@@ -73,6 +73,10 @@ def step_record(path: Continuation, energy: Balance, imbalance: float, attempt: 
         imbalance: largest force left at a node, over the solver's force scale.
         attempt: how the step was solved.
     """
+    of_branches = {}
+    if path.problem.spent is not None:
+        of_branches = {"viscous": energy.viscous, "viscous_dissipation": energy.viscous_dissipation}
+        of_branches["viscous_least"] = least_dissipation(path)
     return StepRecord(
         penetration=path.observer.penetration(path.surface_state),
         imbalance=imbalance,
@@ -86,19 +90,8 @@ def step_record(path: Continuation, energy: Balance, imbalance: float, attempt: 
         coupling_iterations=attempt.coupling_iterations,
         cutbacks=len(attempt.cutbacks),
         jump=attempt.jump,
-        **_of_branches(path, energy),
+        **of_branches,
     )
-
-
-def _of_branches(path: Continuation, energy: Balance) -> dict[str, float]:
-    """Return what a record has of viscous layers, nothing without such layers; collective."""
-    if path.problem.spent is None:
-        return {}
-    return {
-        "viscous": energy.viscous,
-        "viscous_dissipation": energy.viscous_dissipation,
-        "viscous_least": least_dissipation(path),
-    }
 
 
 def least_dissipation(path: Continuation) -> float:
@@ -180,17 +173,10 @@ def refuse_unbalanced(
 def refuse_strained(
     where: str, record: StepRecord, before: Iterable[ContactState], scale: float, formulation: Formulation
 ) -> None:
-    """Refuse a state that stores energy although nothing loads the body.
+    """Refuse a state that stores energy although nothing touches and there is no voltage, of a step and load in words.
 
     Some formulations have such equilibria (:attr:`~variational.contact.formulation.Formulation.unloaded_energy`). They
     come where the method is not coercive, and Newton's method may go on to them while the body is loaded.
-
-    Args:
-        where: step and load.
-        record: of the state, in which nothing touches and there is no voltage.
-        before: states before it.
-        scale: force (N/m) in which residuals are measured.
-        formulation: of the contact.
 
     Raises:
         StepFailed: the energy is above roundoff of the largest one stored under a load before.
@@ -207,13 +193,8 @@ def refuse_strained(
 def broken(slip: ContactState | None, error: float, mu_0: float | None) -> str:
     """Return what does not hold at the last full slip of a run, one sentence; empty where all does, or without slip.
 
-    The bone's load is what the screen bears less the attraction, and Coulomb friction is mu_0 times the contact force.
-    Points count as slipping within roundoff of the cone.
-
-    Args:
-        slip: full slip.
-        error: what the solver's tolerance leaves of a sum of nodal forces (N/m).
-        mu_0: friction coefficient; None where the law of friction is not Coulomb's.
+    The bone's load is what the screen bears less the attraction, and Coulomb friction is mu_0 times the contact force
+    (None of another law), within the error of a sum of nodal forces (N/m) and roundoff of the cone.
     """
     if slip is None:
         return ""

@@ -16,7 +16,6 @@ COLOURS = ("blue", "vermilion", "green", "purple", "orange", "ink")
 DASHES = ("", "6 3", "2 3", "8 3 2 3", "10 4")
 _WIDTH, _LEFT, _RIGHT, _TOP, _FOOT, _GAP = 560.0, 48.0, 16.0, 22.0, 42.0, 30.0  # px
 _MARGIN = 0.05  # of the span of values
-_BAR = 0.35  # half of a bar's width, of the distance of two
 _TICK = 0.4  # half of the height of a spike
 _BEFORE, _AFTER, _ROW, _TIP = 112.0, 114.0, 26.0, 14.0  # px: names, numbers, rows and arrows of bars of errors
 _VALUES = (0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1, 1.5, 2, 3, 5, 10, 20, 50, 100)  # ticks of a logarithm
@@ -32,7 +31,7 @@ class Series:
     x: Sequence[float]
     y: Sequence[float]
     kind: str = "line"
-    """``line``, ``points``, ``both``, ``bars``, or ``ticks``, short upright lines."""
+    """``line``, ``points``, ``both``, or ``ticks``, short upright lines."""
     colour: str = "ink"
     """A variable of ``page.css``."""
     dash: str = ""
@@ -53,7 +52,7 @@ class Panel:
     ends: tuple[float, float] | None = None
     """Of the scale; by default those of the values."""
     zero: bool = False
-    """Whether zero is on the scale, as with bars."""
+    """Whether zero is on the scale."""
     image: str = ""
     """Link of a picture that fills the panel."""
 
@@ -82,8 +81,7 @@ def chart(
         legend: whether the series are named below the chart.
     """
     every = [float(x) for panel in panels for series in panel.series for x in series.x if not math.isnan(x)]
-    bars = any(series.kind == "bars" for panel in panels for series in panel.series)
-    left, right = ends or _ends(every, 0.0, 0.7 if bars or names else 0.0)
+    left, right = ends or _ends(every, 0.0, 0.7 if names else 0.0)
 
     def across(x: float) -> float:
         return _LEFT + (x - left) / (right - left) * (_WIDTH - _LEFT - _RIGHT)
@@ -124,19 +122,17 @@ def _panel(panel: Panel, top: float, across: Any) -> dict[str, Any]:
         if not math.isnan(y)
         for end in (y, *_error(series, k, y))
     ]
-    zero = panel.zero or any(series.kind == "bars" for series in panel.series)
-    low, high = panel.ends or _ends([*values, 0.0] if zero else values, _MARGIN)
-    low = 0.0 if zero and values and min(values) >= 0 else low
+    low, high = panel.ends or _ends([*values, 0.0] if panel.zero else values, _MARGIN)
+    low = 0.0 if panel.zero and values and min(values) >= 0 else low
 
     def up(y: float) -> float:
         return top + panel.height * (high - y) / (high - low)
 
-    groups = sum(series.kind == "bars" for series in panel.series)
     return {
         "top": top, "height": panel.height, "label": panel.label, "image": panel.image,
         "scale": f"{low:.9g} {high:.9g}",
         "zero": up(0.0) if low < 0 < high else None, "ticks": [(up(y), f"{y:g}") for y in _ticks(low, high)],
-        "series": [_drawn(each, k, groups, across, up) for k, each in enumerate(panel.series)],
+        "series": [_drawn(each, across, up) for each in panel.series],
     }  # fmt: skip
 
 
@@ -145,16 +141,12 @@ def _error(series: Series, k: int, y: float) -> tuple[float, ...]:
     return () if math.isnan(error) else (y - error, y + error)
 
 
-def _drawn(series: Series, place: int, groups: int, across: Any, up: Any) -> dict[str, Any]:
+def _drawn(series: Series, across: Any, up: Any) -> dict[str, Any]:
     """Return a series as a path and marks, in px."""
     points = np.array([[across(x), up(y)] for x, y in zip(series.x, series.y, strict=True)]).reshape(-1, 2)
     known = [(k, x, y) for k, (x, y) in enumerate(points.tolist()) if not math.isnan(x + y)]
     points[(points[:, 0] < _LEFT - 1) | (points[:, 0] > _WIDTH - _RIGHT + 1)] = math.nan
     path = _line(points) if series.kind in ("line", "both") else ""
-    if series.kind == "bars":
-        wide = 2 * _BAR * (across(1) - across(0)) / groups
-        first = across(0) - across(_BAR) + place * wide
-        path = " ".join(f"M{x + first:.1f} {up(0):.1f}h{wide:.1f}V{y:.1f}h-{wide:.1f}z" for _, x, y in known)
     if series.kind == "ticks":
         high = _TICK * (up(0) - up(1))
         path = "".join(f"M{x:.1f} {y - high:.1f}v{2 * high:.1f}" for _, x, y in known)

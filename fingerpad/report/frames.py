@@ -37,15 +37,6 @@ class Frame(NamedTuple):
     about: str
     """Its conditions and its contact, in words."""
     drawn: Markup
-    peak: str
-    """Largest contact pressure (kPa), as text."""
-    gaps: str
-    """Equivalent air gaps of the ridges in contact (µm), as text."""
-
-    @property
-    def summary(self) -> tuple[str, str, str]:
-        """The row of a table."""
-        return self.label, self.peak, self.gaps
 
 
 def frames(result: Result) -> tuple[list[Frame], list[str]]:
@@ -65,7 +56,7 @@ def frames(result: Result) -> tuple[list[Frame], list[str]]:
     bodies = [view.snapshot for *_, view in found if view.snapshot is not None]
     most = scales(bodies).highest if bodies else 1e3
     return [
-        Frame(label, _about(state), _drawn(state, view, skin, ends, scale, most), *_extremes(state, skin))
+        Frame(label, _about(state, skin), _drawn(state, view, skin, ends, scale, most))
         for (label, state, view), skin in zip(found, skins, strict=True)
     ], [f"{_KPA * most / DECADES:.2g}", f"{_KPA * most:.2g}"]
 
@@ -91,11 +82,11 @@ def conditions_of(state: ContactState) -> str:
     return f"{state.f_ext:.4g} N/m, {state.voltage:.4g} V, bone at {_MM * state.bone_x + 0.0:.4g} mm"
 
 
-def _about(state: ContactState) -> str:
+def _about(state: ContactState, skin: dict[str, Array]) -> str:
     slides = abs(state.f_t) > 1e-9 * abs(state.f_ext) and not math.isnan(state.mu_app)
     slip = f", µ_app = {state.mu_app:.3f} of the middle section" if slides else ""
     length = f"L_R = {_MM * state.contact_length:.3f} mm, {counted(state.ridges_in_contact, 'ridge')} in contact"
-    return f"{conditions_of(state)}{slip}, {length}"
+    return f"{conditions_of(state)}{slip}, {length}, p_max = {_KPA * float(np.nanmax(skin['p'])):.1f} kPa"
 
 
 def _drawn(
@@ -130,13 +121,6 @@ def _ridges(state: ContactState, skin: dict[str, Array]) -> list[tuple[float, fl
         x = _MM * skin["x"][mine]
         found.append((round(float(x.min()), 4), round(float(x.max()), 4), words))
     return found
-
-
-def _extremes(state: ContactState, skin: dict[str, Array]) -> tuple[str, str]:
-    peak = np.nanmax(_KPA * skin["p"])
-    there = [] if state.ridges is None else _UM * state.ridges.d_eq[state.ridges.length > 0]
-    gaps = [gap for gap in there if math.isfinite(gap)]
-    return f"{peak:.1f}", f"{min(gaps):.2f} to {max(gaps):.2f}" if gaps else "–"
 
 
 def _finger(body: Any, view: tuple[float, float, float, float], most: float) -> str:

@@ -52,7 +52,7 @@ def page(result: Result) -> str:
         note=NOTE, refusal=refusal, pictures=[each for each in pictures if each != face], laws=_laws(result),
         model=result.model_words,
         omitted=[f"{each['what']}: {each['reason']}" for each in result.record.get("omitted") or []],
-        work=_work(result), cost=_cost(result), parameters=html.parameters(result.parameters), versions=versions,
+        cost=_cost(result), parameters=html.parameters(result.parameters), versions=versions,
         again=html.recipe(result.parameters, result.model),
     )  # fmt: skip
 
@@ -188,29 +188,6 @@ def _pictures(result: Result) -> Iterator[tuple[str, str, str]]:
 def _laws(result: Result) -> list[tuple[str, str]]:
     laws = result.record.get("laws") or {}
     return [(name.replace("_", " "), law) for name, law in laws.items()] if isinstance(laws, dict) else []
-
-
-def _work(result: Result) -> Markup:
-    """Return the chart of the solver's work over the steps; empty where it is not known."""
-    steps = [state for state in result.steps if state.record is not None]
-    if not steps:
-        return Markup()
-    x, loads = [state.step for state in steps], [state.load for state in steps]
-    series = [
-        Series(words, x, [getattr(state.record, key) for state in steps], "bars", colour, labels=loads)
-        for words, key, colour in (
-            ("Newton iterations", "newton_iterations", "blue"),
-            ("factorisations",) * 2 + ("vermilion",),
-        )
-    ]
-    cut = [state for state in steps if state.record is not None and state.record.cutbacks]
-    if cut:
-        words = [f"cut {state.record.cutbacks} times" for state in cut if state.record is not None]
-        series.append(
-            Series("cut step", [state.step for state in cut], [0.0] * len(cut), "points", "ink", labels=words)
-        )
-    words = "Newton iterations, factorisations and cut steps over the steps"
-    return chart([Panel("number (–)", series)], "step", words)
 
 
 def _cost(result: Result) -> list[tuple[str, str]]:

@@ -8,6 +8,7 @@ an alternating one, so that it has a note alone. The mean of a waveform is a con
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import fields
+from functools import reduce
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -68,8 +69,8 @@ def used(scene: "Scene") -> dict[str, str]:
 
 def _call(name: str, numbers: Mapping[str, Any], units: Mapping[str, str] | None = None) -> str:
     """Return a law by its name, with its numbers in brackets, each with its unit where that is known."""
-    given = ((key, f"{_shown(value)} {(units or {}).get(key, '')}".rstrip()) for key, value in numbers.items())
-    return f"{name}({', '.join(f'{key}={value}' for key, value in given)})"
+    given = (f"{key}={_shown(value)} {(units or {}).get(key, '')}".rstrip() for key, value in numbers.items())
+    return f"{name}({', '.join(given)})"
 
 
 def _words(law: Any) -> str:
@@ -91,17 +92,13 @@ def _shown(value: Any) -> str:
 # -- notes -----------------------------------------------------------------------------------------------
 def _drives(scene: "Scene") -> list[Caution]:
     """Return of each drive how large it is by every measure, the circuit, and the constant voltage it counts as."""
-    found = ((name, drive_of(w, scene.electric, scene.geometry.sc_thickness)) for name, w in scene.drives().items())
-    return [
-        Caution(
-            "drive",
-            f"Drive {name}: {drive.wave}, "
-            f"{'without losses (Eq. 3)' if drive.circuit.lossless else circuit_in_words(drive.circuit)}. "
-            f"{drive.measures()}, as a constant {drive.reference:.4g} V does without losses.",
-            drive.reference,
-        )
-        for name, drive in found
-    ]
+    found = []
+    for name, wave in scene.drives().items():
+        drive = drive_of(wave, scene.electric, scene.geometry.sc_thickness)
+        losses = "without losses (Eq. 3)" if drive.circuit.lossless else circuit_in_words(drive.circuit)
+        volts = f"as a constant {drive.reference:.4g} V does without losses"
+        found.append(Caution("drive", f"Drive {name}: {wave}, {losses}. {drive.measures()}, {volts}.", drive.reference))
+    return found
 
 
 def _constant_voltage(scene: "Scene") -> list[Caution]:
@@ -166,24 +163,20 @@ def finger_in_words(scene: "Scene") -> list[str]:
     """Return who a scene's finger is, keys of its name with other values, and its remark; none of the default one."""
     if scene.finger == ADULT:
         return []
-    other = _changed(scene)
-    count = len(FINGERS[scene.finger].values) - len(other)
+    finger, other = FINGERS[scene.finger], _changed(scene)
     more = f"; otherwise: {', '.join(other)}" if other else ""
-    finger = FINGERS[scene.finger]
+    count = len(finger.values) - len(other)
     words = f"finger {scene.finger}, {finger.words}: {count} keys by its name (docs/assumptions.md){more}"
     return [words, finger.remark]
 
 
 def _changed(scene: "Scene") -> list[str]:
     """Return the keys of the finger's name that have other values in the scene."""
-    return [key for key, value in FINGERS[scene.finger].values.items() if _value(scene, key) != value]
 
+    def value(key: str) -> Any:
+        return reduce(lambda found, part: getattr(elastic(found), part, None), key.split("."), scene)
 
-def _value(scene: "Scene", key: str) -> Any:
-    found: Any = scene
-    for part in key.split("."):
-        found = getattr(elastic(found), part, None)
-    return found
+    return [key for key, usual in FINGERS[scene.finger].values.items() if value(key) != usual]
 
 
 # -- cautions ------------------------------------------------------------------------------------------
