@@ -13,7 +13,7 @@ from fingerpad.reduced import closure_band, cylinders
 from fingerpad.reduced.closure_band import TIPS
 from fingerpad.results.headline import band_in_words
 from fingerpad.results.quantities import BAND
-from fingerpad.scene import Scene, from_data
+from fingerpad.scene import Scene, from_data, value_of
 from variational.roughness.spectrum import SelfAffine
 from variational.state import RidgeStates
 
@@ -167,6 +167,13 @@ def test_sweep_over_closures_is_of_one_surface():
     for law, found in zip(laws, curve, strict=True):
         alone = fp.run(scene.replace(roughness={"law": law, "h_rms": 1e-6}), model="cylinders")
         assert found.full_slip.mu_app == pytest.approx(alone.full_slip.mu_app, rel=1e-12)
+
+
+def test_laws_of_friction_have_their_names():
+    """Coulomb's as well, which a scene keeps as its coefficient."""
+    scenes = [fp.Scene(friction=0.3), fp.Scene(friction=fp.Derjaguin(0.3, 5e3))]
+    assert [value_of(scene, "friction.law") for scene in scenes] == ["Coulomb", "Derjaguin"]
+    assert [value_of(scene, "friction.mu_f") for scene in scenes] == [0.3, 0.3]
 
 
 # -- ridges that adhere without a load: what a failure says of them, by states of one's own making -------------------

@@ -133,6 +133,14 @@ def test_sentence(scene, words):
     assert sentence(**scene) == words
 
 
+def test_voltage_does_not_change_what_the_force_changes():
+    """Of a finger that was unloaded under a voltage; the force that is left is roundoff."""
+    loads = [{"name": "press", "f_ext": 10.0}, {"name": "charge", "voltage": 100.0}, {"name": "unload", "f_ext": 0.0}]
+    last = state(f_ext=1.2e-15, contact_length=23e-6)
+    found = Result(from_data({"history": loads}), "full", state(voltage=0.0), last, None).headline
+    assert found.sentence == "At 0 N/m and 100 V the contact length of the middle section is 0.023 mm."
+
+
 def test_sentence_of_a_slide_without_full_slip():
     stuck = fp.Result(fp.Scene(), "full", state(voltage=0.0), state(), None)
     words = "At 10 N/m and 100 V full slip was not reached, so there is no friction force of sliding."

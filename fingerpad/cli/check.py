@@ -96,8 +96,9 @@ def _verdict(scene: Scene) -> str:
     tried = REGIONS[0]
     for load, _, force, voltage in _along(scene):
         if not (within(force, tried.ranges["f_ext"]) and within(voltage, tried.ranges["voltage"])):
+            held = "a prescribed height of the bone" if load.bone_height is not None else f"{force:g} N/m"
             return (
-                f"The scene is valid; whether its loads can be reached is not known: {load.name} has {force:g} N/m and "
+                f"The scene is valid; whether its loads can be reached is not known: {load.name} has {held} and "
                 f"{voltage:g} V, and tried were {where(tried)}."
             )
     if any(too_short(scene)):

@@ -31,6 +31,8 @@ _VARIANT = ", "  # before what a model of roughness is computed without
 _MODELS = "rough contact"
 _DIGITS = (2, 3, 4)  # of the numbers in a sentence: as few as tell them apart
 _ROUNDOFF = 1e-9  # by which a number is raised, so that one in the middle of two rounds up on every machine
+_NO_FORCE = 1e-9  # N/m or N, below which a force is roundoff
+_SAME_FORCE = 0.05  # relative: of two states whose forces differ by more, a change is not that of the voltage
 _SMALL = 1e-3  # of the largest number in a sentence, below which another is shown without digits of its own
 
 
@@ -137,6 +139,7 @@ def _of_states(result: ResultData, finger: "WholeFinger | None", slip: ContactSt
         return float(getattr(result.named[state], key) if finger is None else finger.values(state)[key])
 
     f_ext, what = value("f_ext") if finger is None else finger.f_ext, "" if whole else f" of the {SECTION}"
+    f_ext = 0.0 if abs(f_ext) < _NO_FORCE else f_ext
     volts, charge = (value("voltage"),) * 2 if finger is None else (result.scene.volts, value("f_electrostatic"))
     load = force = f"{f_ext:.4g} {unit}"
     if whole and not result.whole:
@@ -150,6 +153,7 @@ def _of_states(result: ResultData, finger: "WholeFinger | None", slip: ContactSt
         if whole and section is not None and not (section.voltage or charge):
             volts = 0.0  # a run can end before its voltage
         scale, attracts = quantities[key].scale, volts and name == "charged" and "uncharged" in names
+        attracts = attracts and math.isclose(value("f_ext", "uncharged"), f_ext, rel_tol=_SAME_FORCE)
         before, after = scale * value(key, "uncharged") if attracts else None, scale * value(key)
         size = "ridge contact area" if whole else f"contact length{what}"
         sentence = _stuck(result, f"{force} and {volts:.4g} V") or _change(

@@ -22,12 +22,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fingerpad.results.quantities import EXTREMES
+from fingerpad.scene.materials import FRICTION_LAWS
 from fingerpad.scene.waveform import Waveform
 from variational.state import ContactState
 
+_AGING = " and ".join(name for name, law in FRICTION_LAWS.laws.items() if law.memory is not None)  # type: ignore[attr-defined]
 NOTE = (
     "Loads over time are quasi-static: no inertia. Time acts in layers with a viscosity, in friction of the laws "
-    "Occlusion and Speed, and in the circuit of electric.tissue and electric.leak. In a scene without these a "
+    f"{_AGING}, and in the circuit of electric.tissue and electric.leak. In a scene without these a "
     "frequency sets how far the finger slides in a period, and nothing else."
 )
 """What a result with a load over time says of it."""

@@ -59,10 +59,10 @@ def value_of(scene: Scene, key: str) -> Any:
     """Return the value of a dotted key in SI; of the key ``law`` of a law's table the law's name."""
     found: Any = scene
     for part, place in re.findall(r"(\w+)|\[(\d+)\]", key):
+        if part in ("law", "mu_f") and isinstance(found, float):  # of Coulomb's law, which a scene keeps as this number
+            found = Coulomb(found)
         if part == "law" and not hasattr(found, "law"):
             return law_name(found)
-        if part == "mu_f" and isinstance(found, float):  # of Coulomb's law, which a scene keeps as this number
-            return found
         found = getattr(found, part) if part else found[int(place)]
     return found
 
