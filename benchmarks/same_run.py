@@ -8,6 +8,7 @@ import json
 import sys
 import tempfile
 import warnings
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -106,9 +107,9 @@ def write_mesh(path: Path) -> None:
         try:
             from fingerpad.model import section
         except ImportError:  # a program of before
-            from fingerpad.cli import mesh
-
-            mesh.main(["demos/scenes/small_finger.toml", "--set", "mesh.contact=40e-6", "--out", str(path)])
+            import_module("fingerpad.cli.mesh").main(
+                ["demos/scenes/small_finger.toml", "--set", "mesh.contact=40e-6", "--out", str(path)]
+            )
         else:
             section.write(fp.Scene.load(Path("demos/scenes/small_finger.toml")).replace(mesh={"contact": 40e-6}), path)
     MPI.COMM_WORLD.barrier()

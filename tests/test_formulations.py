@@ -16,6 +16,7 @@ from fingerpad.scene.remarks import used
 from geometry.bodies import block, ridge
 from geometry.mesh import load
 from tests.test_contact import HEIGHT, MU_F, TOLERANCE, WIDTH, confined_stress, over
+from variational.caution import Caution
 from variational.contact.augmented import AugmentedLagrangian
 from variational.contact.formulation import Formulation, Springs
 from variational.contact.nitsche import Nitsche
@@ -60,7 +61,9 @@ class OneSpring(Formulation):
     eps: float = 1.5e12
 
     symmetric_start: ClassVar[bool] = False
-    caution: ClassVar[str] = "contact by one spring"
+
+    def cautions(self) -> list[Caution]:
+        return [Caution("one spring", "contact by one spring")]
 
     def springs(self, skin) -> Springs:
         return Springs(0.0, 0.0, skin.constant(self.eps), skin.constant(self.eps))

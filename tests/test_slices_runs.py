@@ -12,7 +12,6 @@ from fingerpad.report.page import GOOD
 from fingerpad.results.quantities import FINGER
 from fingerpad.runs.solve import find
 from fingerpad.scene import SceneError, load
-from fingerpad.slices import traces
 from fingerpad.slices.errors import COARSE
 from fingerpad.slices.estimate import with_newtons
 from tests.runs import no_pictures
@@ -126,7 +125,7 @@ def test_least_force(tmp_path):
         raise Stop
 
     with pytest.raises(Stop):
-        traces.whole(fp.Scene(force=1e-5), find("cylinders"), solve)
+        find("cylinders").whole(fp.Scene(force=1e-5), solve)
     assert all(load.f_ext >= 1e-3 for scene in given for load in scene.loads() if load.f_ext is not None)
     finger = fp.run(fp.Scene(force=1e-5), model="cylinders").finger
     assert finger.states["full_slip"].totals["f_ext"] == pytest.approx(1e-5, rel=1e-9)

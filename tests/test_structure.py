@@ -63,7 +63,7 @@ def test_each_module_is_imported_by_a_quick_test():
                 "results.pictures.animation",
                 "results.pictures.drawing",
                 "results.pictures.curves",
-                "results.felt",
+                "results.spikes",
                 "results.pictures.solid",
                 "runs.batch",
                 "runs.newtons",

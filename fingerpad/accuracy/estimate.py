@@ -35,7 +35,9 @@ class Estimate:
         degree: of the elements.
     """
 
-    def __init__(self, model: FingerModel, path: Solve, comm: MPI.Comm, show: Callable[[str], None]) -> None:
+    def __init__(
+        self, model: FingerModel, path: Solve, comm: MPI.Comm, show: Callable[[str], None] = lambda text: None
+    ) -> None:
         """Begin with the states of the path; ``show`` prints a line."""
         self.model, self.base, self.found = model, path, [path]
         self._comm, self._show = comm, show
@@ -99,7 +101,7 @@ class Estimate:
         """Return which states roundoff may have chosen among others."""
         return [Caution("roundoff", each) for solve in self.found for each in solve.doubts]
 
-    def _compare(self, coarse: Solve, fine: Solve, short: bool = True) -> None:
+    def compare(self, coarse: Solve, fine: Solve, short: bool = True) -> None:
         """Take the errors of states from two meshes, of which the coarser has elements twice as large.
 
         Args:
@@ -153,9 +155,8 @@ def with_errors(
         if name in found:
             mesh, penalty = (errors_of(name, each) for each in (estimates, estimate.penalty))
             whole = {key: value + abs(penalty.get(key, 0.0)) for key, value in mesh.items()}
-            error = whole | _of_outputs(estimate, name, outputs)
-            springs = _by_penalty(estimate, name, outputs)
-            error |= {key: error[key] + abs(change) for key, change in springs.items() if key in error}
+            own, springs = _of_outputs(estimate, name, outputs)
+            error = whole | {key: value + abs(springs.get(key, 0.0)) for key, value in own.items()}
             state = with_values(found[name], kept)
             found[name] = replace(state, error=Errors.of(error), penalty=Errors.of(penalty | springs))
     if {"uncharged", "charged"} <= set(found) and path["uncharged"].step == path["charged"].step:  # at 0 V one state
@@ -163,37 +164,27 @@ def with_errors(
     return found
 
 
-def _of_outputs(estimate: Estimate, name: str, outputs: Sequence[Output]) -> dict[str, float]:
-    """Return the errors of outputs in a state, of first order in the sizes of two meshes, by name.
+def _of_outputs(estimate: Estimate, name: str, outputs: Sequence[Output]) -> tuple[dict[str, float], dict[str, float]]:
+    """Return the errors of outputs in a state by two meshes, and the changes by a rigid screen, by name.
 
-    One with a rule of sums has the order of the forces, or of the contact length.
-    One that is not computed from the forces, ridges and sites of a state alone has none.
+    One with a rule of sums has the order of the forces, or of the contact length; another one is of first order.
+    One that is not computed from the forces, ridges and sites of a state alone has no error.
     """
-    coarse, base, found = estimate.coarse, estimate.base, dict[str, float]()
-    if coarse is None or name not in coarse.states or coarse.mesh.contact <= base.mesh.contact:
-        return found
-    ratio = coarse.mesh.contact / base.mesh.contact
+    base, mesh, penalty = estimate.base, dict[str, float](), dict[str, float]()
+    now = base.states[name]
+    before = None if estimate.coarse is None else estimate.coarse.states.get(name)
+    stiff = None if base.stiffer is None else base.stiffer.states.get(name)
+    ratio = 1.0 if estimate.coarse is None else estimate.coarse.mesh.contact / base.mesh.contact
     for each in outputs:
         with suppress(SceneError):
-            states = coarse.states[name], base.states[name]
-            before, now = (each.of(state.state) for state in states)
-            facets = states[0].facet, states[1].facet
-            found[each.name] = TWO * abs(now - before) / (ratio - 1)
-            if each.sum:
-                found[each.name] = of_sum(before, now, facets, estimate.degree, each.si == "m")
-    return found
-
-
-def _by_penalty(estimate: Estimate, name: str, outputs: Sequence[Output]) -> dict[str, float]:
-    """Return by how much a rigid screen would change outputs with a rule of sums in a state, by name."""
-    stiffer, found = estimate.base.stiffer, dict[str, float]()
-    if not estimate.penalty or stiffer is None or name not in stiffer.states:
-        return found
-    base, stiff = estimate.base.states[name].state, stiffer.states[name].state
-    for each in outputs:
-        with suppress(SceneError):
-            found |= rigid({each.name: each.of(base)}, {each.name: each.of(stiff)}) if each.sum else {}
-    return found
+            if before is not None and ratio > 1:
+                values, facets = (each.of(before.state), each.of(now.state)), (before.facet, now.facet)
+                mesh[each.name] = TWO * abs(values[1] - values[0]) / (ratio - 1)
+                if each.sum:
+                    mesh[each.name] = of_sum(*values, facets, estimate.degree, each.si == "m")
+            if each.sum and estimate.penalty and stiff is not None:
+                penalty |= rigid({each.name: each.of(now.state)}, {each.name: each.of(stiff.state)})
+    return mesh, penalty
 
 
 def errors_of(name: str, changes: Mapping[str, float]) -> dict[str, float]:

@@ -57,14 +57,7 @@ class Refinement(Estimate):
     def __init__(
         self, model: FingerModel, path: Solve, comm: MPI.Comm, show: Callable[[str], None], pause: Callable[[], None]
     ) -> None:
-        """Choose the mesh parameters.
-
-        Args:
-            model: of the path.
-            path: its states.
-            comm: communicator of the meshes.
-            show: prints a line.
-            pause: called before each solve; may raise to stop.
+        """Choose the mesh parameters; ``pause`` is called before each solve and may raise to stop.
 
         Raises:
             StepFailed: the path has no state in which a quantity asked for is known.
@@ -147,7 +140,7 @@ class Refinement(Estimate):
         if reason and model.mesh != final:
             return RestartRequired(f"{reason}; the path is followed on the final mesh", model.changed(mesh=final))
         coarser = model.coarser(final)
-        self._compare(path if path.mesh == coarser else self._on_mesh(coarser, path.states), fine)
+        self.compare(path if path.mesh == coarser else self._on_mesh(coarser, path.states), fine)
         return None
 
     def _penalty(self, solve: Solve) -> None:
@@ -247,12 +240,7 @@ class Refinement(Estimate):
     def _on_mesh(
         self, mesh: MeshSize, states: Mapping[str, State], views: bool = False, stiffer: Formulation | None = None
     ) -> Solve:
-        """Return states on a mesh of other element sizes; collective; see :func:`solve_again`.
-
-        Raises:
-            GeometryError: the mesh needs too much memory.
-            StepFailed: a state was not found.
-        """
+        """Return states on a mesh of other element sizes; collective; see :func:`solve_again`."""
         self._pause()
         return self._keep(solve_again(self.model.changed(mesh=mesh), states, self._comm, views, stiffer))
 

@@ -26,8 +26,9 @@ the sum of their squared changes, and any as at least a quarter of the one befor
 Plain numbers only: no mesh, no solver.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import groupby
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -154,7 +155,9 @@ def of_two_meshes(
         ratio = facets[state][0] / facets[state][1] if of_ends and state else 2.0
         order = 1 if of_ends else min(degree, 1.5 if name.endswith("p_max") else 2)
         found[name] = safety * _change(name, coarse[name], fine[name]) / (ratio**order - 1)
-    for names in _sites(found):
+    densities = sorted(name for name in found if "_sed_" in name)
+    for _, same in groupby(densities, lambda name: name.partition("_sed_")[0]):  # of one state
+        names = list(same)
         values = np.array([value(name, fine[name]) for name in names])
         relative = np.array([found[name] for name in names]) / np.where(values > 0, values, np.inf)
         found |= dict(zip(names, np.maximum(relative, sites * np.median(relative)) * values, strict=True))
@@ -162,14 +165,10 @@ def of_two_meshes(
 
 
 def of_sum(coarse: float, fine: float, facets: tuple[float, float], degree: int, length: bool) -> float:
-    """Return the error of a sum over the ridges of a section by two meshes, see :func:`of_two_meshes`, in its unit.
+    """Return the error of a sum over the ridges of a section by two meshes, in its unit.
 
-    Args:
-        coarse: value on the mesh with elements twice as large.
-        fine: on the finer one.
-        facets: lengths of the facets where contact ends (m), coarse and fine.
-        degree: polynomial degree of the elements.
-        length: whether it has the order of a length in contact, else that of a force.
+    Arguments are as of :func:`of_two_meshes`; ``length`` is whether it has the order of a length in contact, else that
+    of a force.
     """
     name, short = "state_contact_length" if length else "state_f_t", facets[0] > _EQUAL * facets[1]
     return of_two_meshes({name: coarse}, {name: fine}, {"state": facets}, degree, short=short)[name]
@@ -186,16 +185,6 @@ def of_two_paths(differences: Mapping[str, float], ratio: float) -> dict[str, fl
         ratio: r, of the facets that can touch, coarse over fine.
     """
     return {name: TWO * difference / (ratio - 1) for name, difference in differences.items()}
-
-
-def _sites(names: Iterable[str]) -> list[list[str]]:
-    """Return the names of energy densities, in a list for each state."""
-    found: dict[str, list[str]] = {}
-    for name in names:
-        state, of_site, _ = name.partition("_sed_")
-        if of_site:
-            found.setdefault(state, []).append(name)
-    return list(found.values())
 
 
 def errors(parameters: Mapping[str, MeshParameter], names: Sequence[str]) -> dict[str, float]:

@@ -83,14 +83,7 @@ class StateRecorder:
         self.states[name] = self._state(direction * (name == "full_slip" if slips is None else slips))
 
     def examine(self, name: str) -> None:
-        """Add the stability of the present state, which was kept; collective.
-
-        Args:
-            name: of the state.
-
-        Raises:
-            StepFailed: the stability cannot be examined.
-        """
+        """Add the stability of the present state, which was kept; collective."""
         kept, checked = self.states[name], self._simulation.checks.check(name)
         self.states[name] = replace(kept, state=checked.of(kept.state))
 
@@ -149,25 +142,18 @@ class StateSolver(Simulation):
         except ValueError as error:  # meshes so coarse that one does not have the shape of the other
             raise StepFailed(f"{again}: {error}") from error
         try:
-            attempt = self._restored(state, name, again)
-        except StepFailed as error:
-            raise StepFailed(lost(error, state.state, closure)) from error
+            attempt = self._balance(name)
+            steady = not state.direction or self._slip.slides_on(name, state.direction)
+            if self.restart is not None:
+                raise StepFailed(f"{again}: {self.restart.reason}")
+            if not steady:
+                raise StepFailed(f"{again}, is not steady")
+        except (FingerExceeded, StepFailed) as error:
+            why = error if isinstance(error, StepFailed) else f"{again}: {error}"
+            raise StepFailed(lost(why, state.state, closure)) from error
         adheres = adhering(self.states[-1], closure)
         if attempt.jump and adheres:
             self.doubts.append(f"{again}: {_JUMPED}: {adheres}")
-
-    def _restored(self, state: State, name: str, again: str) -> Attempt:
-        """Return how a state that was put in was solved for."""
-        attempt = self._balance(name)
-        try:
-            steady = not state.direction or self._slip.slides_on(name, state.direction)
-        except FingerExceeded as error:
-            raise StepFailed(f"{again}: {error}") from error
-        if self.restart is not None:
-            raise StepFailed(f"{again}: {self.restart.reason}")
-        if not steady:
-            raise StepFailed(f"{again}, is not steady")
-        return attempt
 
     def over_stiffer_screen(self, formulation: Formulation, name: str, direction: int = 0) -> None:
         """Solve the present state again over springs of twice the stiffness, which bear the same friction; collective.
@@ -175,10 +161,7 @@ class StateSolver(Simulation):
         Args:
             formulation: the contact over that screen.
             name: of the state.
-            direction: the way the bone slides at full slip, 1 or -1; zero for another state.
-
-        Raises:
-            StepFailed: no equilibrium was found from there.
+            direction: see :attr:`fingerpad.accuracy.states.State.direction`.
         """
         problem = self.finger.problem
         place = problem.history.followed(self.finger.continuation.surface_state.history)["anchor"]
@@ -258,13 +241,14 @@ def solve_again(
     Raises:
         StepFailed: see :meth:`StateSolver.re_equilibrate`.
     """
-    normal = {name: state for name, state in states.items() if not state.direction}
-    options = replace(model.options, both_halves=model.options.both_halves and not model.options.symmetric_start)
-    slips = {name: state for name, state in states.items() if state.direction}
-    also = views, stiffer, examined, pause
-    solves = [_solve(model.changed(options=options), normal, comm, *also)] if normal else []
-    solves += [_solve(model, slips, comm, *also)] if slips else []
-    return together(solves)
+    halves = model.options.both_halves and not model.options.symmetric_start
+    normal = model.changed(options=replace(model.options, both_halves=halves))
+    also = comm, views, stiffer, examined, pause
+    kinds = (
+        (each, {name: state for name, state in states.items() if bool(state.direction) is slips})
+        for each, slips in ((normal, False), (model, True))
+    )
+    return together([_solve(each, mine, *also) for each, mine in kinds if mine])
 
 
 def _solve(
@@ -276,24 +260,23 @@ def _solve(
     examined: Collection[str],
     pause: Callable[[], None],
 ) -> Solve:
-    profiles = Profiles(model.geometry)
-    ends = ((contact_ends(state.snapshot, profiles.along_skin, state.facet), state.facet) for state in states.values())
-    found = edge_places(ends, model.mesh)
-    simulation = StateSolver(model.changed(edges=found), comm)
+    along = Profiles(model.geometry).along_skin
+    ends = ((contact_ends(state.snapshot, along, state.facet), state.facet) for state in states.values())
+    simulation = StateSolver(model.changed(edges=edge_places(ends, model.mesh)), comm)
     recorder, over, finger = StateRecorder(simulation), StateRecorder(simulation), simulation.finger
     springs, soft, viewer = finger.problem.interface.formulation, "", Viewer(finger) if views else None
     for name, state in states.items():
+        words = WORDS.get(name, name)
         pause()
-        simulation.re_equilibrate(state, WORDS.get(name, name))
+        simulation.re_equilibrate(state, words)
         recorder.keep(name, state.direction != 0)
         if name in examined:
             recorder.examine(name)
         if viewer is not None:
-            view = viewer.view(simulation.present(finger.ridge_loads()))
-            recorder.views[name] = view.at(state.state.bone_x)
+            recorder.views[name] = viewer.view(simulation.present(finger.ridge_loads())).at(state.state.bone_x)
         if stiffer is not None:
             try:
-                simulation.over_stiffer_screen(stiffer, WORDS.get(name, name), state.direction)
+                simulation.over_stiffer_screen(stiffer, words, state.direction)
                 over.keep(name, state.direction != 0)
             except StepFailed as error:
                 soft = str(error)

@@ -72,7 +72,7 @@ class WholePath(Estimate):
         states: Sequence[ContactState],
         on_step: Callable[[float], None],
     ) -> None:
-        """Follow nothing yet.
+        """Follow nothing yet; arguments as of :class:`Estimate`.
 
         Args:
             model: of the path.
@@ -86,9 +86,8 @@ class WholePath(Estimate):
         self._states, self._on_step = states, on_step
         self._simulation: Simulation | None = None  # on the coarser mesh
         self._stimuli: SiteStimuli | None = None
-        self._coarse: list[ContactState] = []
-        self.over_time: dict[str, float] = {}
-        self._errors: dict[str, float] = {}  # of these, likewise
+        self._coarse = list[ContactState]()
+        self.over_time, self._errors = dict[str, float](), dict[str, float]()
 
     def run(self) -> RestartRequired | None:
         """Follow the path on the coarser mesh, and estimate, which needs nothing more of the model; collective.
@@ -103,7 +102,7 @@ class WholePath(Estimate):
         except (StepFailed, GeometryError) as error:
             self._note(f"discretisation errors could not be estimated: on elements twice as large, {error}")
             return None
-        self._compare(self._comparable(coarse), self.base, short=False)
+        self.compare(self._comparable(coarse), self.base, short=False)
         self._few_facets()
         self._report()
         if self._states[-1].time > 0:
@@ -118,13 +117,9 @@ class WholePath(Estimate):
         return None
 
     def _on_coarser_path(self) -> Solve:
-        """Return the named states on elements twice as large; collective.
+        """Return the named states on elements twice as large, where the model may turn out to need more; collective.
 
-        The loads are gone through again where more of the model turns out to matter on that mesh.
-
-        Raises:
-            GeometryError: there is no such mesh.
-            StepFailed: the path was lost, or ``on_step`` stopped it.
+        Raises as :func:`~fingerpad.accuracy.solves.follow`.
         """
         mesh = self.model.coarser(self.model.mesh)
         if mesh.contact == self.model.mesh.contact:

@@ -152,7 +152,7 @@ def part(name: str) -> str:
 def _whole(force: float, voltage: float) -> Result:
     """Return the default finger under a force (N) and a voltage (V)."""
     scene = Scene(force=force, voltage=voltage)
-    return traces.whole(scene, cylinders.Cylinders(), cylinders.solve)
+    return cylinders.Cylinders().whole(scene, cylinders.solve)
 
 
 def _mu_app(force: float, voltage: float) -> float:

@@ -27,13 +27,9 @@ _MAX_MARKERS = 15  # points up to which each has a marker
 def text(columns: Sequence[Output], rows: Sequence[Mapping[str, Any]]) -> str:
     """Return an aligned table with units below the names."""
     cells = [[c.symbol for c in columns], [f"({c.unit})" if c.unit else "" for c in columns]]
-    cells += [[_cell(c, row.get(c.name)) for c in columns] for row in rows]
+    cells += [[v if isinstance(v := row.get(c.name), str) else c.shown(v) for c in columns] for row in rows]
     widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
     return "\n".join("  ".join(map(str.rjust, row, widths)).rstrip() for row in cells)
-
-
-def _cell(column: Output, value: str | float | None) -> str:
-    return value if isinstance(value, str) else column.shown(value)
 
 
 def write(file: Path, columns: Sequence[Output], rows: Sequence[Mapping[str, Any]]) -> None:
@@ -44,9 +40,7 @@ def write(file: Path, columns: Sequence[Output], rows: Sequence[Mapping[str, Any
     out = io.StringIO()
     writer = csv.DictWriter(out, [c.name for c in columns], extrasaction="ignore", lineterminator="\n")
     for row in rows:
-        writer.writerow(
-            {k: f"'{cell}" if isinstance(cell, str) and is_formula(cell) else cell for k, cell in row.items()}
-        )
+        writer.writerow({k: f"'{v}" if isinstance(v, str) and is_formula(v) else v for k, v in row.items()})
     replace(file, _head(columns) + out.getvalue())
 
 

@@ -88,18 +88,10 @@ def _cut_short(args: Namespace) -> Scene:
     Raises:
         SceneError: the folder has no scene, or the command line gives another one.
     """
-    given = {
-        "SCENE": args.scene,
-        "--set": args.set,
-        "--force": args.force,
-        "--model": args.model != DEFAULT_MODEL,
-        "--out": args.out != _OUT,
-    }
-    for name, value in given.items():
-        if value:
-            raise SceneError(
-                f"{name} and --resume are given; the folder of --resume has the scene, and takes the results"
-            )
+    given = {"SCENE": args.scene, "--set": args.set, "--force": args.force}
+    given |= {"--model": args.model != DEFAULT_MODEL, "--out": args.out != _OUT}
+    if name := next((name for name, value in given.items() if value), ""):
+        raise SceneError(f"{name} and --resume are given; the folder of --resume has the scene, and takes the results")
     return full_scene(args.resume)
 
 

@@ -52,13 +52,7 @@ class Finger:
     """
 
     def __init__(self, model: FingerModel, comm: MPI.Comm, on_accept: Callable[[Target, float, Attempt], bool]) -> None:
-        """Mesh the finger and set the solver up; collective.
-
-        Args:
-            model: shape, sizes, laws and numbers.
-            comm: communicator of the mesh.
-            on_accept: see :class:`variational.solvers.continuation.Continuation`.
-        """
+        """Mesh the finger and set its :class:`~variational.solvers.continuation.Continuation` up; collective."""
         self.options, self.size, self.profiles = model.options, model.mesh, Profiles(model.geometry)
         self.closure = model.closure
         half = not model.options.both_halves
@@ -91,20 +85,12 @@ class Finger:
         return self.continuation.surface_state, self.solver.bone, self.solver.reaction, self.coupling.d_eq
 
     def ridge_loads(self, by_gap: bool = False) -> RidgeLoads:
-        """Return the resultants of all ridges that can touch, of the whole finger; collective.
-
-        Args:
-            by_gap: see :meth:`variational.resultants.Observer.ridge_loads`.
-        """
+        """Return :meth:`variational.resultants.Observer.ridge_loads` of the whole finger; collective."""
         loads = self.observer.ridge_loads(self.continuation.surface_state, by_gap)
         return loads if self.options.both_halves else loads.whole()
 
     def check_balance(self, loads: RidgeLoads, load: str) -> float:
         """Return the largest force left at a node, over the solver's force scale.
-
-        Args:
-            loads: resultants of the present state.
-            load: name of the present load.
 
         Raises:
             StepFailed: see :func:`fingerpad.model.state.refuse_unbalanced`.
@@ -148,14 +134,7 @@ def both_sides(half: Array) -> Array:
 def assembled(
     model: FingerModel, comm: MPI.Comm, on_accept: Callable[[Target, float, Attempt], bool], half: bool
 ) -> tuple[mesh.TaggedMesh, Body]:
-    """Return a finger's mesh, and its solver in the unloaded state; collective.
-
-    Args:
-        model: shape, sizes, laws and numbers.
-        comm: communicator of the mesh.
-        on_accept: see :class:`variational.solvers.continuation.Continuation`.
-        half: of the half at x >= 0, whose mirror image is the other.
-    """
+    """Return the mesh of a finger, or of its half at x >= 0, and its solver in the unloaded state; collective."""
     numerics, tagged = model.numerics, meshed(model, comm, half)
     attraction = ELECTROSTATIC if model.options.voltage else None
     layers = tagged.layers().values()
@@ -179,12 +158,7 @@ def assembled(
 
 
 def meshed(model: FingerModel, comm: MPI.Comm, half: bool | None = None) -> mesh.TaggedMesh:
-    """Return a finger's mesh; collective.
-
-    Args:
-        model: shape, sizes and numbers.
-        comm: communicator of the mesh.
-        half: whether of the half at x >= 0 alone; by default as the model's options have it.
+    """Return the mesh of a finger, or of its half at x >= 0, by default as the model's options have it; collective.
 
     Raises:
         GeometryError: it cannot be meshed, or needs more memory than is allowed, for which no file is refused.

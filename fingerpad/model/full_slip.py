@@ -48,7 +48,7 @@ class Conditions:
         voltage = [load.level for load in model.loads if load.level is not None]
         return cls(force[-1], [0.0, *voltage][-1], model.friction, model.closure, model.h_0, model.share)
 
-    def beside(self, other: "Conditions") -> str:
+    def difference(self, other: "Conditions") -> str:
         """Return what these have that others have not, in words."""
         words = {"f_ext": f"f_ext {self.f_ext:g} N/m", "voltage": f"voltage {self.voltage:g} V"}
         words |= {"friction": f"friction {self.friction}", "roughness": f"roughness {self.roughness}"}
@@ -125,7 +125,7 @@ class FullSlips:
 
         self._set_laws(before.friction, before.roughness, before.h_0, before.share)
         path.go_to(start.place)
-        name = f"full slip from {before.beside(conditions) or 'itself'}"
+        name = f"full slip from {before.difference(conditions) or 'itself'}"
         target = Target(name, conditions.f_ext, voltage=conditions.voltage, slips=True, constants=set_laws)
         state = self.simulation.slip_to(target)
         if not state.slip_held:

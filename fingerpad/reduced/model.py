@@ -5,12 +5,17 @@ method, :meth:`Model.solve`, and a line in :data:`fingerpad.runs.solve.MODELS`.
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from fingerpad.results.quantities import Output
 from fingerpad.scene.messages import SceneError, show
 from fingerpad.scene.viscosity import viscous_layers
+from fingerpad.slices import traces
+from fingerpad.slices.total import profile, under_one_force
+from fingerpad.slices.trace import refuse_floating, trace
+from fingerpad.slices.traces import Reach, Traced
 from variational.state import ContactState
 
 if TYPE_CHECKING:
@@ -19,6 +24,8 @@ if TYPE_CHECKING:
     from fingerpad.scene import Scene
     from fingerpad.slices.finger import WholeFinger
 
+Solve = Callable[["Scene"], "Result"]
+"""Returns the result of a scene."""
 STATES = ("charged", "full_slip")
 """For which reduced models answer, by their names in :mod:`fingerpad.results.states`."""
 
@@ -62,9 +69,7 @@ class Model(ABC):
             SceneError: the scene has no result, in one sentence.
         """
 
-    def over_forces(
-        self, scene: "Scene", f_ext: Sequence[float], state: str, solve: Callable[["Scene"], "Result"]
-    ) -> list[ContactState]:
+    def over_forces(self, scene: "Scene", f_ext: Sequence[float], state: str, solve: Solve) -> list[ContactState]:
         """Return a state of a scene under each of several external forces, for a force in newtons.
 
         Args:
@@ -83,6 +88,67 @@ class Model(ABC):
                 f"the model {self.name!r} has no {state.replace('_', ' ')} at {f_ext[found.index(None)]:.4g} N/m"
             )
         return states
+
+    def of_points(
+        self, scene: "Scene", solve: Solve, name: str, expected: float, top: float, outputs: Iterable[Output] = ()
+    ) -> Traced:
+        """Return the trace of a state of a scene without a force on the whole finger; refuse states without a bone.
+
+        Args:
+            scene: of the cross-section.
+            solve: solves a scene by this model.
+            name: of the state.
+            expected: force (N/m) at the centre of the finger, about.
+            top: force (N/m) that the trace is to reach.
+            outputs: of one's own, that are summed.
+        """
+        kind = "full_slip" if name == "full_slip" else "charged"
+        scene = scene.model_copy(update={"voltage": 0.0}) if name == "uncharged" else scene
+        found = self.over_forces(scene, traces.grid(expected, top), kind, solve)
+        refuse_floating(found, self.name)
+        return Traced(trace(found, scene.geometry.ridge_wavelength, outputs=outputs), found)
+
+    def whole(self, scene: "Scene", solve: Solve, outputs: Sequence[Output] = ()) -> "Result":
+        """Return the whole finger under a force, and the section at its centre as named states.
+
+        Args:
+            scene: with a force.
+            solve: solves a scene without a force on the whole finger by this model.
+            outputs: of one's own, that are summed.
+
+        Raises:
+            SceneError: a profile that does not fit, or a force that no trace reached.
+        """
+        section = scene.replace(force=None)
+
+        def make(name: str, top: float) -> Traced:
+            return self.of_points(section, solve, name, scene.centre_force, top, outputs)
+
+        found = {name: Reach(scene, make).follow(name) for name in traces.states(scene)}  # none depends on another
+        finger = traces.summed(scene, self.traces, found)
+        centre = list(found.values())[-1].total.centre / profile(scene.slices).centre_scale  # type: ignore[union-attr]
+        if centre < traces.SMALLEST:
+            raise SceneError(
+                f"force is {scene.force:.4g} N, under which the centre of the finger bears {centre:.2g} N/m, and it "
+                f"must bear at least {traces.SMALLEST:g} N/m; give a larger force or a shorter finger"
+            )
+        return self.of_finger(scene, solve(scene.replace(f_ext=centre)), finger)
+
+    def with_sum(self, result: "Result", solve: Solve, outputs: Sequence[Output] = ()) -> "Result":
+        """Return the result of a section with its whole finger, or with a note why it has none; see :meth:`whole`.
+
+        The centre of the finger bears the section's force in one of the named states, and less in the others.
+        """
+        scene, f_ext = result.scene, result.scene.f_ext
+        try:
+            names = traces.states(scene)
+            found = {name: self.of_points(scene, solve, name, f_ext, f_ext, outputs) for name in names}
+            made = {name: each.trace for name, each in found.items()}
+            totals = under_one_force(profile(scene.slices), made, scene.slices.count, f_ext)
+            found = {name: each._replace(total=totals[name]) for name, each in found.items()}
+            return self.of_finger(scene, result, traces.summed(scene, self.traces, found))
+        except SceneError as error:
+            return replace(result, notes=(*result.notes, f"{traces.NO_NEWTONS}: {error}"))
 
     def of_finger(self, scene: "Scene", section: "Result", finger: "WholeFinger") -> "Result":
         """Return the result of a force on the whole finger.

@@ -113,7 +113,7 @@ class Result(ResultData):
             SceneError: the run has no load over time, or no receptor sites; there is no such class; or two states are
                 too far apart for one that is named.
         """
-        from fingerpad.results.felt import afferents  # SciPy's signals
+        from fingerpad.results.spikes import afferents  # SciPy's signals
 
         return afferents(self, laws)
 

@@ -3,13 +3,16 @@
 A scene's folder is named by a hash of all its parameters: run again, a sweep computes only what has changed, and runs
 that were cut short go on from their checkpoints. The hash does not depend on the program: after a change of the
 mechanics the folder must be deleted. A process is ``python3 -m fingerpad.runs.solve SCENE.json FOLDER LIMIT MODEL``.
+
+Sweeps of ``states="full_slip"`` follow points in chains instead, each in a process of :mod:`fingerpad.runs.full_slip`.
 """
 
 import fcntl
 import hashlib
+import itertools
 import json
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from functools import partial
 from pathlib import Path
@@ -21,13 +24,21 @@ from fingerpad.results.terminal import in_words, watched
 from fingerpad.runs import processes
 from fingerpad.runs.context import OUT_OF_MEMORY, Summary, ended, summary
 from fingerpad.runs.processes import End, run
-from fingerpad.scene import Scene
+from fingerpad.scene import Scene, SceneError, law_name
+from fingerpad.scene.law_keys import parameters
+from fingerpad.scene.messages import show
 from fingerpad.scene.reading import DEFAULT_MODEL
+from fingerpad.scene.viscosity import viscous_layers
 
 if TYPE_CHECKING:
     from rich.progress import Progress
 
 _LIMIT = 900.0  # s of processor time for one scene
+_FREE = ("f_ext", "voltage", "friction", "roughness", "electric", "slide_length")
+"""Keys in which neighbours may differ by numbers: they change neither the mesh nor the layers."""
+_SHORTEST = 8  # points of a chain, of which the first takes the time of some fifteen others
+_LIMIT_OF_CHAIN = 4 * 3600.0  # s of processor time
+_LEFT_OUT = "with states='full_slip' it must be left out, or give states='all'"
 
 
 def key(scene: Scene) -> str:
@@ -75,12 +86,7 @@ def _description(summary: Summary) -> str:
 def point(parameters: Mapping[str, Any], folder: str, limit: float, model: str, law_folders: Sequence[str] = ()) -> End:
     """Run a scene in a fresh process into its own folder, unless it is done; any machine with that folder can do it.
 
-    Args:
-        parameters: of the scene, ready for JSON.
-        folder: of the scene's results.
-        limit: processor time (s).
-        model: a name of :data:`fingerpad.runs.solve.MODELS`.
-        law_folders: of laws of one's own.
+    Arguments are as of :func:`sweep`; ``law_folders`` are those of laws of one's own.
     """
     place = Path(folder)
     place.mkdir(parents=True, exist_ok=True)
@@ -179,3 +185,83 @@ def finish(
         shown = bar.add_task("points", total=total)
         processes.finish({k: task.call for k, task in enumerate(tasks)}, done, jobs, executor, look)
     return {name: result(scene, folder) or lost[name] for name, scene in scenes.items()}
+
+
+# -- chains of full slip ----------------------------------------------------------------------------------------
+def check_supported(scene: Scene) -> None:
+    """Refuse a scene of which full slip is not that of press, charge and slide under a force per length, or has a past.
+
+    Raises:
+        SceneError: in one sentence.
+    """
+    for key in ("history", "force", "accuracy"):
+        if (value := getattr(scene, key)) is not None:
+            given = show(value) if key == "force" else "given"
+            raise SceneError(f"{key} is {given}; {_LEFT_OUT}")
+    for layer in viscous_layers(scene.materials):
+        raise SceneError(f"{layer}.viscosity is given, and a state needs the past of its layers; {_LEFT_OUT}")
+    law = scene.friction_law()
+    if law is not None and law.memory is not None:
+        raise SceneError(
+            f"friction has the law {show(law_name(law))}, on whose memory full slip depends; with states='full_slip' "
+            "it must have none, or give states='all'"
+        )
+
+
+def sweep_chains(
+    scenes: Mapping[str, Scene], folder: Path, jobs: int, quiet: bool, executor: Executor | None = None
+) -> dict[str, Summary]:
+    """Solve what has not been solved yet, each scene beside the one before; see :func:`sweep`.
+
+    With an executor ``jobs`` is the number of chains, at most.
+    """
+    folder = folder.absolute()
+    folder.mkdir(parents=True, exist_ok=True)
+    with lock_file(folder / "lock") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)  # another sweep may be at it
+        missing = {name: scene for name, scene in scenes.items() if result(scene, folder) is None}
+        half_arc, tasks, files = _half_arc([*missing.values()]), list[Task](), list[Path]()
+        for k, names in enumerate(chains(missing, jobs)):
+            files.append(folder / f"chain_{k}.json")
+            replace_json(files[-1], {"half_arc": half_arc, "scenes": [missing[name].parameters() for name in names]})
+            law_folders = sorted({place for name in names for place in missing[name].law_folders()})
+            tasks.append(Task(names, partial(chain, str(files[-1]), str(folder), law_folders)))
+        found = finish(scenes, tasks, folder, jobs, quiet, executor)
+        for file in files:
+            file.unlink(missing_ok=True)
+    return found
+
+
+def chain(file: str, folder: str, law_folders: Sequence[str]) -> End:
+    """Follow a chain (a file of its scenes) in a fresh process, which writes each point into its own folder."""
+    return run("fingerpad.runs.full_slip", [file, folder, str(_LIMIT_OF_CHAIN)], _LIMIT, law_folders)
+
+
+def chains(scenes: Mapping[str, Scene], jobs: int) -> Iterator[list[str]]:
+    """Yield the names of the scenes of each chain: those of one mesh and laws, in as many parts as there are jobs.
+
+    Scenes of two closures, or with and without a field in contact, are no neighbours: their states are far apart,
+    and from there full slip may be another one than by a path.
+    """
+    groups = dict[str, list[str]]()
+    for name, scene in scenes.items():
+        fixed = {key: value for key, value in scene.parameters().items() if key not in _FREE}
+        laws = [_kind(law) for law in (scene.friction_law(), scene.closure())]
+        groups.setdefault(json.dumps([fixed, laws], sort_keys=True), []).append(name)
+    for names in groups.values():
+        parts = max(1, min(jobs, len(names) // _SHORTEST))
+        ends = [len(names) * k // parts for k in range(parts + 1)]
+        yield from (names[a:b] for a, b in itertools.pairwise(ends))
+
+
+def _kind(law: Any) -> tuple[str, dict[str, Any]]:
+    """Return a law's name and its parameters that are no numbers."""
+    return type(law).__name__, {name: value for name, value in parameters(law).items() if isinstance(value, bool | str)}
+
+
+def _half_arc(scenes: Sequence[Scene]) -> float | None:
+    """Return the ``mesh.touching_half_arc`` (m) of all scenes of a sweep that give none, that of the widest contact."""
+    from fingerpad.model.options import by_rule
+
+    free = [scene for scene in scenes if scene.geometry.file is None and scene.mesh.touching_half_arc is None]
+    return max((by_rule(scene).mesh.touching_half_arc or 0.0 for scene in free), default=None)

@@ -100,15 +100,11 @@ class Branches:
         self._solved: Solved | None = None  # the last full slip
 
     def follow(self, model: FingerModel) -> None:
-        """Follow all traces; collective.
-
-        Args:
-            model: whose loads are those of :attr:`section` up to full slip.
+        """Follow all traces of a model, whose loads are those of :attr:`section` up to full slip; collective.
 
         Raises:
             RestartTraces: more must be part of the model.
             StepFailed: a state was not found.
-            ValueError: full slip depends on its past.
         """
         self.found = {}
         self._simulation = simulation = Simulation(model, self._comm, self._on_step, self._on_load)

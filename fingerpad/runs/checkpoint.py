@@ -54,13 +54,7 @@ class Checkpoint:
     """
 
     def __init__(self, results: Path, parameters: Mapping[str, Any], versions: Mapping[str, str]) -> None:
-        """Name the folder; nothing is touched.
-
-        Args:
-            results: folder of the run's results.
-            parameters: of its scene.
-            versions: of what its numbers depend on, by name.
-        """
+        """Name the folder, in that of the results; ``versions`` are of all that its numbers depend on, by name."""
         self._results, self._folder = results, results / "checkpoint"
         scene = hashlib.sha256(json.dumps(parameters, sort_keys=True).encode()).hexdigest()
         self._head = {"format": _FORMAT, "scene": scene, **versions}
@@ -72,10 +66,7 @@ class Checkpoint:
         return self._folder / f"{number:04d}{kind}.npz"
 
     def read(self, classes: Iterable[type] = ()) -> dict[str, Any]:
-        """Return the last state, its list of items by the name ``items``.
-
-        Args:
-            classes: the dataclasses that it may hold.
+        """Return the last state, which may hold some dataclasses; its list of items has the name ``items``.
 
         Raises:
             CheckpointError: there is none, or it is of another scene or program, or damaged.
@@ -154,12 +145,7 @@ def checkpoint_of(scene: Scene, folder: Path, outputs: Sequence[Output]) -> Chec
 
 
 def read(checkpoint: Checkpoint, comm: MPI.Comm, classes: Sequence[type] = ()) -> dict[str, Any]:
-    """Return what the last checkpoint holds, on every rank; collective.
-
-    Args:
-        checkpoint: in a folder.
-        comm: communicator of the run.
-        classes: that it may hold besides those of a run.
+    """Return what the last checkpoint holds, on every rank; ``classes`` besides those of a run; collective.
 
     Raises:
         CheckpointError: a run cannot go on from there; on every rank.
@@ -197,13 +183,7 @@ def _read(file: Path, classes: Mapping[str, type]) -> Any:
 
 
 def _plain(value: Any, parts: dict[str, list[NDArray[Any]]], sizes: dict[str, int]) -> Any:
-    """Return a value ready for JSON, with its arrays put into one a type; arrays, dataclasses, dictionaries, numbers.
-
-    Args:
-        value: what is to be kept.
-        parts: arrays so far, flat, by their type.
-        sizes: number of their values.
-    """
+    """Return a value ready for JSON; its arrays are put into one a type, flat: ``parts``, with the ``sizes`` so far."""
     if isinstance(value, np.ndarray):
         kind = value.dtype.name
         parts.setdefault(kind, []).append(value.ravel())

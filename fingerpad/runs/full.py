@@ -130,7 +130,8 @@ def _run(scene: Scene, session: _Session, kept: dict[str, Any] | None, context: 
                 restart = attempt.follow()
                 if restart is None:
                     break
-                restarts.record(restart, attempt.report.record.states, attempt.simulation.finger, session.clock)
+                states, seconds = attempt.report.record.states, session.clock.processor_seconds()
+                restarts.record(restart, states, attempt.simulation.finger, seconds)
                 writer.restart()
                 model = restart.model
             result = attempt.result(scene, context)

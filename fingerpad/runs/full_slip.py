@@ -21,10 +21,10 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from fingerpad.startup import MPI  # isort: skip  # before the libraries of finite elements
-from fingerpad.accuracy.estimate import errors_of
-from fingerpad.accuracy.richardson import of_two_meshes, rigid
+from fingerpad.accuracy.estimate import Estimate, with_errors
+from fingerpad.accuracy.richardson import rigid
 from fingerpad.accuracy.solves import StateRecorder, solve_again
-from fingerpad.accuracy.states import Solve, with_values
+from fingerpad.accuracy.states import Solve
 from fingerpad.model.cautions import lost
 from fingerpad.model.drive_loads import EQUAL, gap_factor
 from fingerpad.model.finger import Finger
@@ -49,10 +49,9 @@ from fingerpad.scene.messages import counted
 from fingerpad.scene.reading import DEFAULT_MODEL
 from fingerpad.scene.remarks import coefficient
 from variational.caution import Caution
-from variational.element import ELEMENTS
 from variational.solvers.continuation import StepFailed
 from variational.solvers.outcome import Counts
-from variational.state import PATH, ContactState, Errors
+from variational.state import PATH, ContactState
 
 _SLIP = "full_slip"
 _SAME_STATE = 1e-3
@@ -73,20 +72,11 @@ class FineSolver:
     """Solves for the full slips of a simulation again on the scene's mesh, and estimates errors from the two meshes."""
 
     def __init__(self, simulation: Simulation, comm: MPI.Comm) -> None:
-        """Find the receptor sites.
-
-        Args:
-            simulation: on the path's mesh; each state is the present one when it is solved for again.
-            comm: communicator of the meshes.
-        """
+        """Find the receptor sites of a simulation on the path's mesh, whose present states are solved for again."""
         self._simulation, self._comm, self._recorder = simulation, comm, StateRecorder(simulation)
 
     def solve(self, model: FingerModel, state: ContactState) -> Fine:
-        """Return the present state on the mesh of a model; collective.
-
-        Args:
-            model: with loads and laws of the state, and the :attr:`~fingerpad.model.options.FingerModel.final` sizes.
-            state: the present state, at full slip.
+        """Return the present state, of these loads and laws, on the model's final mesh; collective.
 
         Raises:
             StepFailed: no steady full slip was found on one of the meshes.
@@ -96,18 +86,13 @@ class FineSolver:
         final = model.final.model_copy(update=arc)
         self._recorder.keep(_SLIP)
         path, coarser = self._recorder.solve(), model.coarser(final)
-        stiffer = model.contact.over_stiffer_screen()
+        stiffer, estimate = model.contact.over_stiffer_screen(), Estimate(model, path, self._comm)
         fine = solve_again(model.changed(mesh=final), path.states, self._comm, stiffer=stiffer)
-        coarse = path
-        if path.mesh != coarser:
-            coarse = solve_again(model.changed(mesh=coarser), path.states, self._comm)
-        facets = {_SLIP: (coarse.states[_SLIP].facet, fine.states[_SLIP].facet)}
-        found = of_two_meshes(coarse.parts(), fine.parts(), facets, ELEMENTS[model.numerics.element].degree)
-        change = {} if fine.stiffer is None else rigid(fine.values(), fine.stiffer.values())
-        mesh, penalty = (errors_of(_SLIP, each) for each in (found, change))
-        error = {key: value + abs(penalty.get(key, 0.0)) for key, value in mesh.items()}
-        solved = with_values(state, fine.states[_SLIP])
-        return Fine(replace(solved, error=Errors.of(error), penalty=Errors.of(penalty)), fine)
+        same = path.mesh == coarser
+        estimate.compare(path if same else solve_again(model.changed(mesh=coarser), path.states, self._comm), fine)
+        if fine.stiffer is not None:
+            estimate.penalty = rigid(fine.values(), fine.stiffer.values())
+        return Fine(with_errors(estimate, {_SLIP: state})[_SLIP], fine)
 
 
 class Chain:
@@ -118,13 +103,7 @@ class Chain:
     """
 
     def __init__(self, scenes: Sequence[Scene], half_arc: float | None, comm: MPI.Comm) -> None:
-        """Take the scenes in order.
-
-        Args:
-            scenes: each beside the one before.
-            half_arc: ``mesh.touching_half_arc`` (m) where they give none.
-            comm: communicator of the mesh.
-        """
+        """Take the scenes, each beside the one before, with ``mesh.touching_half_arc`` (m) where they give none."""
         self._scenes, self._half_arc, self._comm = scenes, half_arc, comm
         self._options = plan(max(scenes, key=lambda scene: abs(scene.volts)))
         self._shared = any(gap_factor(scene) is not None for scene in scenes)
@@ -180,16 +159,10 @@ class Chain:
         return _of_state(scene, found.state, fine, finger, clock.cost(finger.solver.counts, 0), counts, notes)
 
     def _final(self, model: FingerModel, state: ContactState) -> Fine | None:
-        """Return the present state on the scene's own mesh; None without errors, where that is the one it is on.
-
-        Raises:
-            StepFailed: it was not found there.
-        """
-        if model.final is None:
+        """Return the present state on the scene's own mesh; None without errors, where that is the one it is on."""
+        if model.final is None or self._slips is None:
             return None
-        if self._fine is None:
-            assert self._slips is not None
-            self._fine = FineSolver(self._slips.simulation, self._comm)
+        self._fine = self._fine or FineSolver(self._slips.simulation, self._comm)
         return self._fine.solve(model, state)
 
     def _path(self, model: FingerModel) -> FullSlips:

@@ -11,7 +11,6 @@ A scene of which a state is not found this way, or that asks for an accuracy, is
 from collections.abc import Sequence
 from contextlib import closing
 from dataclasses import replace
-from typing import Any
 
 import fingerpad.startup  # noqa: F401
 from fingerpad.accuracy.solves import solve_again
@@ -96,13 +95,7 @@ def run(scene: Scene, context: RunContext) -> Result:
 
 
 class _Newtons:
-    """A force on the whole finger while it is worked on.
-
-    Attributes:
-        doing: what is being followed, in words.
-        clock: of the run.
-        branches: the traces.
-    """
+    """A force on the whole finger while it is worked on: ``branches`` are its traces, ``doing`` is in words."""
 
     def __init__(
         self,
@@ -205,7 +198,13 @@ class _Newtons:
             cost=self.clock.cost(branches.counts, fine.unknowns),
             failure=broken(slip, least, coefficient(self._scene)),
             notes=tuple(notes),
-            record=self._record(model) | {"force_error": least},
+            record={
+                "path_mesh": model.mesh.model_dump(),
+                "restarts": self._restarts,
+                "laws": used(self._scene),
+                "provenance": provenance(),
+                "force_error": least,
+            },
             finger=traces.summed(self._scene, _WORDS, found),
         )
         return result, cautions_on(states)
@@ -215,8 +214,8 @@ class _Newtons:
 
         ``stiffer`` is the last state over a screen of twice the stiffness, None over a rigid one.
         """
-        scene = self._scene
-        finger, force, count, wavelength = profile(scene.slices), scene.force, scene.slices.count, _wavelength(scene)
+        scene, wavelength = self._scene, self._scene.geometry.ridge_wavelength
+        finger, force, count = profile(scene.slices), scene.force, scene.slices.count
         assert force is not None
         made = corrected(each.trace, pairs, wavelength)
         carried = {
@@ -227,11 +226,6 @@ class _Newtons:
             carried[PENALTY] = penalty_errors(pairs[-1].fine, stiffer.state, wavelength, made.own)
         return Traced(made, each.states, at_force(finger, made, force, count), pairs[-1].fine, carried)
 
-    def _record(self, model: FingerModel) -> dict[str, Any]:
-        """Return what the summary holds besides, ready for JSON."""
-        mesh = {"path_mesh": model.mesh.model_dump(), "restarts": self._restarts}
-        return mesh | {"laws": used(self._scene), "provenance": provenance()}
-
 
 def _differences(name: str, pairs: Sequence[Pair]) -> list[str]:
     """Return notes on states in which other ridges touch on the two meshes."""
@@ -241,7 +235,3 @@ def _differences(name: str, pairs: Sequence[Pair]) -> list[str]:
         for coarse, fine in ((pair.coarse, pair.fine) for pair in pairs)
         if fine.ridges_in_contact != coarse.ridges_in_contact
     ]
-
-
-def _wavelength(scene: Scene) -> float:
-    return scene.geometry.ridge_wavelength

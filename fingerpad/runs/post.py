@@ -144,10 +144,7 @@ def of_kept(outputs: Sequence[Output]) -> list[Entry]:
 def kept(result: Result, context: RunContext, own: Sequence[Entry] = ()) -> Result:
     """Return a result with what follows from it, written into the folder if there is one; collective.
 
-    Args:
-        result: its states.
-        context: ranks and folder.
-        own: entries of this result, before those of :data:`POST`.
+    Entries of its ``own`` come before those of :data:`POST`.
 
     Raises:
         FolderError: the folder is in use, holds results of another scene or model, or cannot be written to.
@@ -164,7 +161,8 @@ def completed(result: Result, context: RunContext, writer: Writer, own: Sequence
     """Write a result, compute what follows from it, and write it again; collective; see :func:`kept`."""
     writer.take()
     written = result = replace(result, folder=writer.folder)
-    _write(_unfinished(result), writer, headline=False)
+    begun = replace(result, notes=(*result.notes, _BEGUN), record=result.record | {BEGUN: True})
+    _write(begun, writer, headline=False)
     in_words = True
     for entry in sorted((*own, *POST), key=lambda each: each.files):
         if entry.files and result is not written:
@@ -184,10 +182,6 @@ def _write(result: Result, writer: Writer, headline: bool) -> None:
     if writer.folder is not None and writer.comm.rank == 0:
         replace_file(writer.folder / dataset.FILE, dataset.content(result.to_xarray()))
         replace_json(writer.folder / "summary.json", result.to_dict(headline))
-
-
-def _unfinished(result: Result) -> Result:
-    return replace(result, notes=(*result.notes, _BEGUN), record=result.record | {BEGUN: True})
 
 
 def _tried(entry: Entry, result: Result, context: RunContext, writer: Writer) -> tuple[Result, bool]:

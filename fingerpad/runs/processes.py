@@ -64,7 +64,7 @@ def run(module: str, arguments: Sequence[str], limit: float, folders: Sequence[s
     Args:
         module: calls :func:`limit_processor_time`.
         arguments: of its command line.
-        limit: processor time (s); wall time is limited to 20 times this.
+        limit: processor time (s); elapsed time is limited to :data:`_STUCK` times this.
         folders: of laws of one's own.
     """
     path, laws = os.pathsep.join([str(_ROOT), *entries("PYTHONPATH")]), os.pathsep.join([*entries(LAWS), *folders])

@@ -6,7 +6,6 @@ from typing import Any
 
 from fingerpad.model.finger import Finger, meshed
 from fingerpad.model.options import FingerModel
-from fingerpad.model.report import Clock
 from fingerpad.model.simulation import RestartRequired
 from fingerpad.results.interrupt import Interrupted
 from fingerpad.results.terminal import Console
@@ -56,11 +55,11 @@ class Restarts:
         """Go on from what another process kept."""
         self.table, self.notes, self._seconds = kept["table"], kept["notes"], kept["seconds"]
 
-    def record(self, restart: RestartRequired, states: Sequence[ContactState], finger: Finger, clock: Clock) -> None:
-        """Record a restart; states and finger are those until here; collective."""
-        mesh = restart.model.mesh
+    def record(self, restart: RestartRequired, states: Sequence[ContactState], finger: Finger, seconds: float) -> None:
+        """Record a restart; states, finger and processor time (s) are those until here."""
+        mesh, counts = restart.model.mesh, finger.solver.counts
         step, load = (states[-1].step, states[-1].load) if states else (0, "start")
-        whole, seconds = restart.model.options.both_halves, clock.processor_seconds()
+        whole = restart.model.options.both_halves
         halves = " and both halves of the finger" if whole and not finger.options.both_halves else ""
         added = f"mesh.touching_half_arc {mesh.touching_half_arc:g} m{halves}"
         if mesh.contact < finger.size.contact:
@@ -72,7 +71,6 @@ class Restarts:
         text = f"step {step} ({load}): {restart.reason}; all loads again with {added}"
         self._console.show(f"fingerpad: {text}")
         self._log.warning(text)
-        counts = finger.solver.counts
         self.table.append(
             {
                 "step": step,
@@ -116,11 +114,8 @@ def finer(model: FingerModel, error: StepFailed, comm: "MPI.Comm", reason: str =
     A path whose elements are twice as large as those of the final mesh is followed on that mesh. Else the contact size
     is halved.
 
-    Args:
-        model: whose loads were not reached.
-        error: why not.
-        comm: communicator of the run.
-        reason: why not, with what else is known of the state before; empty for the error's words.
+    ``reason`` is why the loads were not reached, with what else is known of the state before, in place of the error's
+    words.
     """
     coarse = model.final is not None and model.mesh.contact > model.final.contact
     helps = model.mesh_file is None and finer_mesh_may_help(error, bool(model.asked) or coarse)

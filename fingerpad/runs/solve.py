@@ -148,13 +148,7 @@ def stopped(result: Result) -> BaseException:
 
 
 def solved(scene: Scene, model: Model, context: RunContext) -> Result:
-    """Return what a model answers to a scene with all its laws; collective.
-
-    Args:
-        scene: the scene.
-        model: one of :data:`MODELS`.
-        context: all else.
-    """
+    """Return what a model answers to a scene with all its laws; collective."""
     context = replace(context, outputs=checked_outputs(context.outputs))
     scene = scene.resolved()
     if context.resume:
@@ -167,15 +161,12 @@ def solved(scene: Scene, model: Model, context: RunContext) -> Result:
 
 def _section(scene: Scene, model: Model, context: RunContext) -> Result:
     """Return what a model answers to a scene without a force, with its finger and band, in a folder; collective."""
-    result = _solved(scene, model, context)
+    result, here = _solved(scene, model, context), replace(context, folder=None)
     if model.path:
         return result
 
     def with_sum(result: Result) -> Result:
-        from fingerpad.slices import traces
-
-        here = replace(context, folder=None)
-        return traces.with_sum(result, model, lambda each: _solved(each, model, here), context.outputs)
+        return model.with_sum(result, lambda each: _solved(each, model, here), context.outputs)
 
     own = [Entry("newtons of the whole finger", with_sum, lambda *_: model.sums), *of_outputs(context.outputs)]
     return kept(result, context, own)
@@ -201,9 +192,6 @@ def _refuse_different(scene: Scene, comm: "MPI.Comm | Serial") -> None:
     """Refuse scenes that differ from rank to rank, whose solves would wait for each other for ever; collective.
 
     Hashes of laws are left out: those without a file are another one in each process.
-
-    Raises:
-        SceneError: the first key that differs, on every rank.
     """
     if isinstance(comm, Serial):
         return
@@ -219,8 +207,6 @@ def _refuse_different(scene: Scene, comm: "MPI.Comm | Serial") -> None:
 
 def _whole(scene: Scene, model: Model, context: RunContext) -> Result:
     """Return the result of a force on the whole finger; what an earlier run has finished is taken from its folder."""
-    from fingerpad.slices import traces
-
     with context.place(scene, model.name) as place:
         if place is not None and model.path:
             if on_rank_0(context.ranks, lambda: finished(scene, place.folder) is not None):
@@ -233,7 +219,7 @@ def _whole(scene: Scene, model: Model, context: RunContext) -> Result:
         model.check(scene)
         return newtons.run(scene, context)
     here = replace(context, folder=None)
-    found = traces.whole(scene, model, lambda each: _solved(each, model, here), context.outputs)
+    found = model.whole(scene, lambda each: _solved(each, model, here), context.outputs)
     return kept(found, context, of_outputs(context.outputs))
 
 
@@ -251,13 +237,7 @@ def continued(scene: Scene, model: Model, context: RunContext) -> Result:
 
 
 def main(file: Path, folder: Path, model: str) -> None:
-    """Run a point of a sweep into its folder, from its checkpoint where it has one.
-
-    Args:
-        file: the scene's parameters in JSON.
-        folder: of the results.
-        model: a name of :data:`MODELS`.
-    """
+    """Run a point of a sweep (parameters of a scene in JSON) into its folder, from its checkpoint where it has one."""
     scene, way = from_data(json.loads(file.read_text(encoding="utf-8"))), find(model)
     try:
         continued(scene, way, RunContext(folder, lines=way.path, bar=way.path, report=False))

@@ -20,7 +20,7 @@ from fingerpad.results.data import checked as checked_outputs
 from fingerpad.results.files import FORMAT, below, check_folder, replace_json
 from fingerpad.results.quantities import Output
 from fingerpad.results.result import Result
-from fingerpad.runs import batch, chains
+from fingerpad.runs import batch
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.post import applied, of_kept
 from fingerpad.runs.solve import MODELS, checked, find, solved
@@ -103,14 +103,13 @@ def sweep(
     values = _values(scenes, axes)
     if states != STATES[0]:
         for each in scenes:
-            chains.check_supported(each)
+            batch.check_supported(each)
     for each in scenes if way.meshes else ():
         each.refuse_laws_of_program("the processes of a sweep")
     folder = None if out is None else Path(out)
     if folder is not None:
         _claim(folder)
-    if way.meshes:
-        assert folder is not None
+    if way.meshes and folder is not None:
         kept = _in_processes(scenes, values, folder, jobs, way, quiet, states, executor)
         found = [applied(each, of_kept(outputs)) for each in kept]
     else:
@@ -125,14 +124,7 @@ def sweep(
 
 
 def _written(done: Sweep, folder: Path, about: dict[str, Any], place: Path) -> Sweep:
-    """Write the files of a sweep; return it with notes on them.
-
-    Args:
-        done: the sweep, with its notes.
-        folder: of the files.
-        about: what ``sweep.json`` has beside axes, rows, outputs, cautions and notes.
-        place: folder of the points.
-    """
+    """Write the files of a sweep, whose points are in ``place``; return it with notes on them."""
     for name in FILES[:-1]:  # else that of an earlier sweep may stay beside this one's
         (folder / name).unlink(missing_ok=True)
     about |= {"axes": list(done.axes), "rows": done.table(), "outputs": [each.to_dict() for each in done.outputs]}
@@ -244,7 +236,7 @@ def _in_processes(
             found[names[-1]] = {"failure": str(error)}
     if chained:
         along = [names[k] for k in _neighbours(axes) if names[k] in named]
-        found |= chains.sweep({name: named[name] for name in along}, place, jobs, quiet, executor)
+        found |= batch.sweep_chains({name: named[name] for name in along}, place, jobs, quiet, executor)
     else:
         found |= batch.sweep(named, place, jobs, _LIMIT, model.name, quiet, executor)
     results = list[Result]()

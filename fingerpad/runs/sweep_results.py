@@ -108,12 +108,10 @@ class Sweep:
             raise ValueError(f"quantity is {quantity!r}; it must be one of {', '.join(known)}")
         if self.whole:
             fingers = [result.finger for result in self.results]
-            values = [
-                np.nan if f is None or state not in f.states else f.values(state).get(quantity, np.nan) for f in fingers
-            ]
+            found = [{} if f is None or state not in f.states else f.values(state) for f in fingers]
+            values = [each.get(quantity, np.nan) for each in found]
         else:
-            found = [result.named.get(state) for result in self.results]
-            values = [np.nan if each is None else float(getattr(each, quantity, np.nan)) for each in found]
+            values = [float(getattr(getattr(result, state), quantity, np.nan)) for result in self.results]
         return np.array(values).reshape([len(values) for values in self.axes.values()])
 
     def rows(self) -> list[dict[str, Any]]:
@@ -137,11 +135,9 @@ class Sweep:
     def to_xarray(self) -> "xarray.Dataset":
         """Return the sweep as one dataset with units, as ``sweep.nc`` has it.
 
-        Returns:
-            The named states of every point along the swept keys and ``state``, as in the dataset of a run; also its
-            loads, ridges, sites and sums over the whole finger, where a point has them; its failure and cost. The
-            attributes are the parameters that all points share. Under a force on the whole finger there are
-            sums over it alone.
+        It has the named states of every point along the swept keys and ``state``, as in the dataset of a run; loads,
+        ridges, sites and sums over the whole finger, where a point has them; its failure and cost. Attributes are the
+        parameters that all points share. Under a force on the whole finger there are sums over it alone.
         """
         import xarray  # brings pandas
 

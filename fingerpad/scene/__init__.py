@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from fingerpad.scene import law_keys
-from fingerpad.scene.changes import start
+from fingerpad.scene.fingers import start
 from fingerpad.scene.loads import Load
 from fingerpad.scene.materials import CLOSURES, FRICTION_LAWS, MATERIALS
 from fingerpad.scene.messages import SceneError

@@ -203,7 +203,7 @@ def refuse_contradictions(history: Sequence[Load], given: Mapping[str, Any], err
 
     Args:
         history: the loads of a scene.
-        given: the values of :data:`fingerpad.scene.changes.DEFAULT_HISTORY` that are given.
+        given: the values of :data:`fingerpad.scene.fingers.DEFAULT_HISTORY` that are given.
         errors: whether errors are estimated.
         step_scale: key of the numerics.
 

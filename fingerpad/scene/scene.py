@@ -13,9 +13,8 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, Field, PrivateAttr, ValidationError, model_validator
 
 from fingerpad import notebook
-from fingerpad.scene.changes import DEFAULT_HISTORY, changed, preset_keys, with_presets, without
 from fingerpad.scene.drive import Drive, Electric, drive_of, refuse_drives
-from fingerpad.scene.fingers import ADULT, FingerName
+from fingerpad.scene.fingers import ADULT, DEFAULT_HISTORY, FingerName, changed, preset_keys, with_presets, without
 from fingerpad.scene.keys import every
 from fingerpad.scene.law_code import digest, folder_of, imported
 from fingerpad.scene.law_keys import UnresolvedLaw, kept

@@ -99,13 +99,8 @@ def correction_errors(
 ) -> dict[str, float]:
     """Return the relative errors of a sum by the ratios between the states that are known on both meshes.
 
-    Args:
-        finger: along its axis.
-        trace: on the coarse mesh.
-        pairs: states of the trace on both, at growing forces.
-        wavelength: of a ridge (m).
-        force: on the finger (N).
-        count: slices in each stretch of contact.
+    The trace is on the coarse mesh, ``pairs`` as of :func:`corrected`, all else as of
+    :func:`fingerpad.slices.total.at_force`.
     """
     less = [[*pairs[:k], *pairs[k + 1 :]] for k in range(len(pairs) - 1)]
     other = [corrected(trace, each, wavelength) for each in less] or [trace]

@@ -43,21 +43,17 @@ Those of the indentation are twice as large as there, because they grow the most
 """
 
 
-def of_section(
-    state: ContactState | None, wavelength: float, own: Iterable[Output] = ()
-) -> dict[str, dict[str, float]]:
+def of_section(state: ContactState, wavelength: float, own: Iterable[Output] = ()) -> dict[str, dict[str, float]]:
     """Return the relative errors that a sum takes over from its cross-section, by part and quantity.
 
     The gross width ends with half of a ridge's length on either side, and has the error of that length.
 
     Args:
-        state: of the cross-section, with estimated errors; None where there is none.
+        state: of the cross-section, with estimated errors.
         wavelength: of a ridge (m).
         own: outputs that are summed.
     """
     mesh, penalty = dict[str, float](), dict[str, float]()
-    if state is None:
-        return {MESH: mesh}
     for name, of in (_OF_SECTION | {each.name: each.name for each in own}).items():
         value, error, springs = (getattr(each, of, math.nan) for each in (state, state.error, state.penalty))
         if value and not math.isnan(error):
@@ -136,7 +132,7 @@ def interpolation(finger: Profile, trace: Trace, total: Total, count: int) -> di
         count: slices in each stretch of contact.
 
     Returns:
-        Of friction, attraction, areas, indentation and effective width; empty for a trace of two points.
+        Of all sums, indentation and effective width; empty for a trace of two points.
     """
     if len(trace.depth) < LEAST:
         return {}
@@ -162,13 +158,8 @@ def _at_equal_force(
 ) -> dict[str, float]:
     """Return the relative changes of sums at equal force from those of the slices at equal indentation.
 
-    The effective width has that of the force at equal force of the centre, and that of the centre.
-
-    Args:
-        total: the slices.
-        moved: changes of the slices by the names of its sums, shape (slices,).
-        slope: of each quantity over the force.
-        values: of the sum.
+    The effective width has that of the force at equal force of the centre, and that of the centre. ``moved`` has the
+    changes of the slices by the names of sums, shape (slices,), and ``slope`` that of each quantity over the force.
     """
     force = moved["f_ext"]
     sums = {name: total.thickness @ abs(each - slope[name] * force) for name, each in moved.items() if name != "f_ext"}
@@ -187,16 +178,11 @@ def _between(finger: Profile, trace: Trace, total: Total, count: int, slope: Map
     k = np.clip(np.searchsorted(trace.depth, depth, side="right") - 1, 0, len(trace.depth) - 2)
     jumps, above = trace.ridges[k] != trace.ridges[k + 1], depth >= trace.depth[0]
     at, points = np.log(np.maximum(depth, trace.depth[0])), np.log(trace.depth)
-    moved = dict[str, Array]()
-    power = {each.name: each.power for each in trace.own}
+    moved, power = dict[str, Array](), {each.name: each.power for each in trace.own}
     for name, column in fine.summed.items():
         values, width = trace.columns[column], np.asarray(finger.width(fine.z)) ** power.get(column, 1)
-        linear = (
-            np.exp(np.interp(at, points, np.log(np.maximum(abs(values), _SMALLEST_VALUE))))
-            * width
-            * np.sign(values.sum())
-        )
-        half = (values[k + 1] - values[k]) / 2 * width
+        logs = np.interp(at, points, np.log(np.maximum(abs(values), _SMALLEST_VALUE)))
+        half, linear = (values[k + 1] - values[k]) / 2 * width, np.exp(logs) * width * np.sign(values.sum())
         moved[name] = np.where(above, np.where(jumps, half, linear - fine.columns[column]), 0.0)
     found = _at_equal_force(fine, moved, slope, total.values)
     return {name: share for name, share in found.items() if name != "indentation"}
@@ -225,30 +211,17 @@ def _span(low: float, high: float, **ends: Ends) -> dict[str, Sequence[tuple[flo
 
 
 ONCE = _span(
-    0.1,
-    1.0,
-    f_t=(-0.007, 0.002),
-    f_electrostatic=(-0.003, 0.035),
-    gross_area=(0.001, 0.053),
-    contact_area=(-0.002, 0.04),
-    indentation=(-0.06, -0.05),
-)
+    0.1, 1.0, f_t=(-0.007, 0.002), f_electrostatic=(-0.003, 0.035), gross_area=(0.001, 0.053),
+    contact_area=(-0.002, 0.04), indentation=(-0.06, -0.05),
+)  # fmt: skip
 EARLIER = _span(0.3, 1.0, gross_area=(0.05, 0.07))
 SMOOTH: Mapping[str, Sequence[tuple[float, Ends]]] = {
     "gross_area": (
-        (0.01294, (0.561, 0.562)),
-        (0.04779, (0.300, 0.301)),
-        (0.1096, (0.130, 0.131)),
-        (0.2008, (0.120, 0.121)),
-        (0.3255, (0.057, 0.058)),
-        (0.4830, (0.016, 0.017)),
-        (0.6784, (0.003, 0.004)),
-        (0.9108, (0.011, 0.012)),
-        (1.185, (0.001, 0.002)),
-        (1.502, (0.001, 0.002)),
+        (0.01294, (0.561, 0.562)), (0.04779, (0.300, 0.301)), (0.1096, (0.130, 0.131)), (0.2008, (0.120, 0.121)),
+        (0.3255, (0.057, 0.058)), (0.4830, (0.016, 0.017)), (0.6784, (0.003, 0.004)), (0.9108, (0.011, 0.012)),
+        (1.185, (0.001, 0.002)), (1.502, (0.001, 0.002)),
     )
-}
-COMPARISONS = ONCE, EARLIER, SMOOTH
+}  # fmt: skip
 _SAME_FORCE = 1e-9
 
 
@@ -256,7 +229,7 @@ def known_at(force: float) -> dict[str, Ends]:
     """Return the least and largest error of each quantity whose error is known at a force (N)."""
     found: dict[str, Ends] = {}
     for name in COMPARED:
-        spans = [each for comparison in COMPARISONS for each in _around(comparison.get(name, ()), force)]
+        spans = [each for comparison in (ONCE, EARLIER, SMOOTH) for each in _around(comparison.get(name, ()), force)]
         if spans:
             found[name] = min(low for low, _ in spans), max(high for _, high in spans)
     return found
@@ -272,23 +245,18 @@ def _around(points: Sequence[tuple[float, Ends]], force: float) -> list[Ends]:
 def remarks(forces: Iterable[float], names: Collection[str] = tuple(COMPARED)) -> list[str]:
     """Return what is known of the error of quantities at forces (N), a sentence for neighbours that share it."""
     compared = {name: text for name, text in COMPARED.items() if name in names}
-    start, beside = "Error of the sum of slices at", "beside a finger of 20 × 14 × 28 mm in three dimensions"
     found = []
     for words, same in groupby(sorted(set(forces) if compared else ()), lambda force: _remark(force, compared)):
         numbers = [f"{force:.4g}" for force in same]
         at = ", ".join(numbers) if len(numbers) < 3 else f"{numbers[0]} to {numbers[-1]}"
-        found.append(f"{start} {at} N, {beside}: {words}.")
+        beside = "beside a finger of 20 × 14 × 28 mm in three dimensions"
+        found.append(f"Error of the sum of slices at {at} N, {beside}: {words}.")
     return found
 
 
 def _remark(force: float, compared: Mapping[str, str]) -> str:
     found = known_at(force)
-    words = [f"{text} {percent(found[name])}" for name, text in compared.items() if name in found]
+    ends = {name: [f"{100 * end:+.3g}".replace("-", "−") for end in found[name]] for name in compared if name in found}
+    words = [f"{compared[name]} {low} to {high} %" for name, (low, high) in ends.items()]
     missing = ", ".join(text for name, text in compared.items() if name not in found)
     return "; ".join([", ".join(words)] * bool(words) + [f"{missing} not known"] * bool(missing))
-
-
-def percent(ends: Ends) -> str:
-    """Return a least and a largest error in per cent, as they are printed."""
-    low, high = (f"{100 * end:+.3g}".replace("-", "−") for end in ends)
-    return f"{low} to {high} %"

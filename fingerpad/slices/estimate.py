@@ -68,12 +68,16 @@ def estimate(
     """
     finger, count, wavelength = profile(scene.slices), scene.slices.count, scene.geometry.ridge_wavelength
     presses = _on_final_mesh(_thinned(press), named.get("uncharged"))
+    sums = [outputs, *[[*map(_of_sums, outputs)]] * (len(presses) - 1)]
+    still = {"uncharged", "charged"} <= set(named) and named["charged"].voltage == 0  # normal contact is one state
     traces, *others = (
-        _traces(scene, each, named, wavelength, [*map(_of_sums, outputs)] if k else outputs)
-        for k, each in enumerate(presses)
+        {name: _scaled(scene, press, name, state, wavelength, own) for name, state in named.items()}
+        for press, own in zip(presses, sums, strict=True)
     )
-    if "charged" in named and traces.get("uncharged") is traces["charged"]:
+    if still:
         named = {**named, "uncharged": named["charged"]}
+        for each in (traces, *others):
+            each["uncharged"] = each["charged"]
     found = under_one_force(finger, traces, count)
     away = _away(finger, [traces, *others], count)
     carried = {}
@@ -114,20 +118,6 @@ def _on_final_mesh(press: Sequence[ContactState], end: ContactState | None) -> l
     return [[scaled(state, 1.0, 0.0, 0.0) for state in press], [*alike, last], [*accident, last]]
 
 
-def _traces(
-    scene: Scene,
-    press: Sequence[ContactState],
-    named: Mapping[str, ContactState],
-    wavelength: float,
-    outputs: Sequence[Output],
-) -> dict[str, Trace]:
-    """Return the trace of each named state; at 0 V normal contact is one state, with one trace."""
-    found = {name: _scaled(scene, press, name, state, wavelength, outputs) for name, state in named.items()}
-    if "uncharged" in found and "charged" in found and named["charged"].voltage == 0:
-        found["uncharged"] = found["charged"]
-    return found
-
-
 def _away(finger: Profile, traces: Sequence[Mapping[str, Trace]], count: int) -> dict[str, dict[str, float]]:
     """Return the relative changes of sums by other traces than the first ones, added up, by state and quantity.
 
@@ -145,11 +135,7 @@ def _away(finger: Profile, traces: Sequence[Mapping[str, Trace]], count: int) ->
 
 
 def _closed_form(scene: Scene) -> list[ContactState]:
-    """Return a press without voltage by the closed form.
-
-    Raises:
-        TraceError: its contact is not known.
-    """
+    """Return a press without voltage by the closed form, where its contact is known."""
     still = scene.model_copy(update={"voltage": 0.0})
     forces = [float(each) for each in np.geomspace(scene.f_ext * LIGHT, scene.f_ext, _MAX_POINTS)]
     try:
@@ -186,8 +172,8 @@ def _scaled(
     """Return the trace of a named state: the press changed as the cylinders are, and scaled to the state itself."""
     states = _charged(scene, press, name, end.voltage)
     law, now = scene.friction_law(), states[-1]
-    shape = {key: _ratio(getattr(end, key), getattr(now, key)) for key in ("f_electrostatic", "contact_length")}
-    shape["bone_height"] = _ratio(end.bone_height, now.bone_height)
+    keys = ("f_electrostatic", "contact_length", "bone_height")
+    shape = {key: _ratio(getattr(end, key), getattr(now, key)) for key in keys}
     found = [replace(state, **{key: factor * getattr(state, key) for key, factor in shape.items()}) for state in states]
     slips = name == "full_slip" and law is not None
     borne = [(state.f_ext + state.f_electrostatic, state.contact_length) for state in found]

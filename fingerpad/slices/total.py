@@ -25,6 +25,15 @@ AREAS = {"contact_length": "contact_area", "gross_width": "gross_area"}
 """Columns of a slice whose sums have names of their own."""
 
 
+def _lowest(of: Callable[[Floats], Floats], ends: tuple[float, float], count: int) -> tuple[float, float, bool]:
+    """Return the place (m) of the least value, the value, and whether it is at an end of the places searched."""
+    z = np.linspace(*ends, count)
+    k = int(np.argmin(of(z)))
+    fine = np.linspace(z[max(k - 1, 0)], z[min(k + 1, count - 1)], count)
+    found = of(fine)
+    return float(fine[found.argmin()]), float(found.min()), k in (0, count - 1)
+
+
 @dataclass(frozen=True)
 class Profile:
     """A finger along its axis, from ``ends[0]`` to ``ends[1]`` (m)."""
@@ -54,21 +63,14 @@ class Profile:
 
     @cached_property
     def _lowest(self) -> tuple[float, float]:
-        """The place (m) where the finger first touches, and s + θ z (m) there, the least one.
-
-        Raises:
-            SceneError: it is at an end of the finger, whose pad then touches nothing.
-        """
-        z = np.linspace(*self.ends, _SEARCHED)
-        k = int(np.argmin(self._above(z)))
-        if k in (0, len(z) - 1) and not (self.straight and self.tilt == 0):
+        """The place (m) where the finger first touches, and s + θ z (m) there, the least one."""
+        place, least, at_end = _lowest(self._above, self.ends, _SEARCHED)
+        if at_end and not (self.straight and self.tilt == 0):
             raise SceneError(
-                f"slices.tilt is {self.tilt:g} rad, with which the finger is lowest at its end, at z = {z[k]:.3g} m, "
+                f"slices.tilt is {self.tilt:g} rad, with which the finger is lowest at its end, at z = {place:.3g} m, "
                 "and its pad has no contact; give a smaller tilt, a smaller radius or a longer finger"
             )
-        fine = np.linspace(z[max(k - 1, 0)], z[min(k + 1, len(z) - 1)], _SEARCHED)
-        found = self._above(fine)
-        return float(fine[found.argmin()]), float(found.min())
+        return place, least
 
     @cached_property
     def centre_scale(self) -> float:
@@ -262,14 +264,8 @@ def under_one_force(
 ) -> dict[str, Total]:
     """Return the finger in several states under one force, the largest that all of their traces reach.
 
-    Args:
-        profile: the finger along its axis.
-        traces: of a slice on the scale 1, by state. At one indentation the states bear other forces.
-        count: slices in each stretch of contact.
-        f_ext: force (N/m) up to which the traces are used; by default to their ends.
-
-    Raises:
-        SceneError: the pad has no contact, or more of it than the finger has.
+    At one indentation the states bear other forces. Arguments are as of :func:`at_indentation`; ``f_ext`` is the force
+    (N/m) up to which the traces are used, by default their ends.
     """
     ends = (at_indentation(profile, each, deepest(profile, each, f_ext), count) for each in traces.values())
     force = min(total.totals["f_ext"] for total in ends)
@@ -283,9 +279,4 @@ def deepest(profile: Profile, trace: Trace, f_ext: float | None = None) -> float
     """
     end = trace.end[0] if f_ext is None else trace.under(f_ext)
 
-    def lowered(z: NDArray[Any]) -> NDArray[Any]:
-        return np.asarray(profile.rise(z) + end * profile.width(z))
-
-    z = np.linspace(*profile.ends, _SEARCHED_FOR_DEEPEST)
-    k = int(np.argmin(lowered(z)))
-    return float(lowered(np.linspace(z[max(k - 1, 0)], z[min(k + 1, len(z) - 1)], _SEARCHED_FOR_DEEPEST)).min())
+    return _lowest(lambda z: profile.rise(z) + end * profile.width(z), profile.ends, _SEARCHED_FOR_DEEPEST)[1]

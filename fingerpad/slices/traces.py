@@ -1,34 +1,31 @@
 """Traces of the cross-section for a force in newtons.
 
 The full model follows all traces in one simulation (``fingerpad.runs.newtons``). A model without a path has points at
-fixed forces, so that a sum over them does not depend on the way to it. A trace that ends before the force is reached is
-made again to a larger one.
+fixed forces (:mod:`fingerpad.reduced.model`), so that a sum over them does not depend on the way to it. A trace that
+ends before the force is reached is made again to a larger one.
 """
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from fingerpad.results.quantities import PENALTY, STABILITY, Output
-from fingerpad.results.result import Result
+from fingerpad.results.quantities import PENALTY, STABILITY
 from fingerpad.results.states import WORDS
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.parameters import LINE, POINT, POWER
 from fingerpad.slices import errors
 from fingerpad.slices.finger import WholeFinger, in_order
-from fingerpad.slices.total import BeyondTrace, Total, at_force, profile, under_one_force
-from fingerpad.slices.trace import Trace, refuse_floating, trace
+from fingerpad.slices.total import BeyondTrace, Total, at_force, profile
+from fingerpad.slices.trace import Trace
 from variational.state import ContactState, Errors
 
 if TYPE_CHECKING:
-    from fingerpad.reduced.model import Model
+    pass
 
-Solve = Callable[[Scene], Result]
-"""Returns the result of a scene."""
 NO_NEWTONS = "no newtons of the whole finger"
 """Beginning of a note that says why."""
 LIGHT = 1 / 30
@@ -64,61 +61,6 @@ class Traced(NamedTuple):
     """Relative errors of the sum by part and quantity; empty of a model without discretisation errors."""
 
 
-def whole(scene: Scene, model: "Model", solve: Solve, outputs: Sequence[Output] = ()) -> Result:
-    """Return the whole finger under a force by a model without a path, and the section at its centre as named states.
-
-    Args:
-        scene: with a force.
-        model: that solves.
-        solve: solves a scene without a force on the whole finger by it.
-        outputs: of one's own, that are summed.
-
-    Raises:
-        SceneError: a profile that does not fit, or a force that no trace reached.
-    """
-    section = scene.replace(force=None)
-
-    def make(name: str, top: float) -> Traced:
-        return Traced(*of_points(section, model, solve, name, scene.centre_force, top, outputs))
-
-    found = {name: Reach(scene, make).follow(name) for name in states(scene)}  # none depends on the one before
-    finger = summed(scene, model.traces, found)
-    centre = list(found.values())[-1].total.centre / profile(scene.slices).centre_scale  # type: ignore[union-attr]
-    if centre < SMALLEST:
-        raise SceneError(
-            f"force is {scene.force:.4g} N, under which the centre of the finger bears {centre:.2g} N/m, and it must "
-            f"bear at least {SMALLEST:g} N/m; give a larger force or a shorter finger"
-        )
-    return model.of_finger(scene, solve(scene.replace(f_ext=centre)), finger)
-
-
-def of_points(
-    scene: Scene,
-    model: "Model",
-    solve: Solve,
-    name: str,
-    expected: float,
-    top: float,
-    outputs: Iterable[Output] = (),
-) -> tuple[Trace, list[ContactState]]:
-    """Return a trace of a model without a path, and its states; refuse states without a bone.
-
-    Args:
-        scene: without a force on the whole finger.
-        model: that solves.
-        solve: solves a scene by it.
-        name: of the state.
-        expected: force (N/m) at the centre of the finger, about.
-        top: force (N/m) that the trace is to reach.
-        outputs: of one's own, that are summed.
-    """
-    kind = "full_slip" if name == "full_slip" else "charged"
-    scene = scene.model_copy(update={"voltage": 0.0}) if name == "uncharged" else scene
-    found = model.over_forces(scene, grid(expected, top), kind, solve)
-    refuse_floating(found, model.name)
-    return trace(found, scene.geometry.ridge_wavelength, outputs=outputs), found
-
-
 def grid(expected: float, top: float) -> list[float]:
     """Return the forces (N/m) of a trace: powers of two and between them, from a light one to the second beyond a top.
 
@@ -128,24 +70,6 @@ def grid(expected: float, top: float) -> list[float]:
     first = round(math.log2(expected * LIGHT)) * PER_OCTAVE
     last = max(math.ceil(math.log2(top) * PER_OCTAVE) + 1, first + 3)
     return [2.0 ** (k / PER_OCTAVE) for k in range(first, last + 1)]
-
-
-def with_sum(result: Result, model: "Model", solve: Solve, outputs: Sequence[Output] = ()) -> Result:
-    """Return the result of a section by a model without a path, with its whole finger, or with a note why it has none.
-
-    The centre of the finger bears the section's force in one of the named states, and less in the others; arguments as
-    of :func:`whole`.
-    """
-    scene = result.scene
-    try:
-        f_ext = scene.f_ext
-        found = {name: Traced(*of_points(scene, model, solve, name, f_ext, f_ext, outputs)) for name in states(scene)}
-        traces = {name: each.trace for name, each in found.items()}
-        totals = under_one_force(profile(scene.slices), traces, scene.slices.count, f_ext)
-        found = {name: each._replace(total=totals[name]) for name, each in found.items()}
-        return model.of_finger(scene, result, summed(scene, model.traces, found))
-    except SceneError as error:
-        return replace(result, notes=(*result.notes, f"{NO_NEWTONS}: {error}"))
 
 
 def states(scene: Scene) -> list[str]:
@@ -208,12 +132,7 @@ class Reach:
     """Has traces made to forces that are large enough."""
 
     def __init__(self, scene: Scene, make: Callable[[str, float], Traced]) -> None:
-        """Expect the force of the default finger at the centre.
-
-        Args:
-            scene: with a force.
-            make: makes the trace of a state to a largest force (N/m).
-        """
+        """Expect the force of the default finger at the centre; ``make`` makes a trace to a largest force (N/m)."""
         assert scene.force is not None
         self._force, self._count, self._make = scene.force, scene.slices.count, make
         self._finger = profile(scene.slices)
@@ -226,11 +145,7 @@ class Reach:
         return min(max(self._top, _SHORTEST), _LARGEST)
 
     def follow(self, name: str) -> Traced:
-        """Return the trace of a state, long enough for the force.
-
-        Raises:
-            SceneError: it could not be made so long.
-        """
+        """Return the trace of a state, long enough for the force; refuse one that cannot be."""
         for tries in range(_TRIES):
             top = self.top
             made = self._make(name, top)

@@ -26,6 +26,7 @@ from fingerpad.results.data import ResultData
 from fingerpad.results.files import replace
 from fingerpad.results.pictures import style
 from fingerpad.results.pictures.finger import LAYER_COLOURS, curve
+from fingerpad.results.quantities import STEPS
 from fingerpad.results.states import by_load
 from fingerpad.scene.messages import SceneError, clip
 from fingerpad.scene.remarks import coefficient
@@ -47,6 +48,9 @@ _QUALITY = 55  # of WebP, of 100
 _COLOURS = 64  # of GIF
 _MM, _KPA = 1e3, 1e-3
 _LOW, _HIGH = -0.18, 1.55  # mm, of the view near the contact
+_LEGEND: dict[str, Any] = {
+    "loc": "lower left", "bbox_to_anchor": (0, 1), "ncols": 3, "fontsize": 8, "borderaxespad": 0.1
+}  # fmt: skip
 _SLIPS = 1e-3  # relative: a traction this near the limit of friction counts as on it
 
 
@@ -136,13 +140,6 @@ def motion_of(folder: Path) -> Motion:
     return made
 
 
-class _Frame(NamedTuple):
-    """One picture: a state, and how far it is on the way to the next one."""
-
-    state: int
-    part: float
-
-
 class _Scene(NamedTuple):
     """What all frames have in common."""
 
@@ -179,49 +176,45 @@ def animate(result: ResultData, path: Path, on_frame: Callable[[int, int], None]
     half = 1.0 + (float(np.nanmax(np.abs(places))) if np.isfinite(places).any() else 4.0)
     highest = _KPA * max(float(np.nanmax(found.skin[:, [1, 3]])), 1.0)
     scene = _Scene(states, found, coefficient(result.scene), half, highest)
-    frames, figure, pictures = _frames(states), _figure(), list[Image.Image]()
-    for frame in frames:
-        pictures.append(_drawn(scene, frame, figure))
+    frames, figure, pictures = _frames(states), style.figure(_HEIGHT), list[Image.Image]()
+    rows = [["whole"] * 2 + ["forces"] * 3, ["near"] * 5, ["stress"] * 5]
+    figure.subplot_mosaic(rows, height_ratios=(6, 4, 4))
+    for k, part in frames:
+        pictures.append(_drawn(scene, k, part, figure))
         on_frame(len(pictures), len(frames))
     _save(path, pictures)
     return path
 
 
-def _frames(states: Sequence[ContactState]) -> list[_Frame]:
-    """Return the frames of states: some of each load at least, none within a jump, and the last state at the end."""
-    found = []
+def _frames(states: Sequence[ContactState]) -> list[tuple[int, float]]:
+    """Return of each frame its state and how far it is on the way to the next one, 0 to 1.
+
+    Each load has some at least; there is none within a jump, and the last state is at the end.
+    """
+    found = list[tuple[int, float]]()
     for _, mine in by_load(states):
         parts = max(math.ceil(_LOAD / len(mine)), min(3, _FRAMES // len(states)), 1)
         for state in mine:
             k = states.index(state)
             jumps = k + 1 < len(states) and (after := states[k + 1].record) is not None and after.jump
-            found += [_Frame(k, 0.0 if jumps or k + 1 == len(states) else j / parts) for j in range(parts)]
+            found += [(k, 0.0 if jumps or k + 1 == len(states) else j / parts) for j in range(parts)]
     return found[: len(found) - parts + 1]
 
 
-def _figure() -> Figure:
-    """Return a figure with empty panels, on which all frames are drawn: whole finger, forces, contact and stresses."""
-    drawn = style.figure(_HEIGHT)
-    grid = drawn.add_gridspec(3, 5, height_ratios=(6, 4, 4))
-    for place in (grid[0, :2], grid[0, 2:], grid[1, :], grid[2, :]):
-        drawn.add_subplot(place)
-    return drawn
-
-
-def _drawn(scene: _Scene, frame: _Frame, figure: Figure) -> Image.Image:
-    """Return the picture of a frame, drawn on a figure with panels."""
-    xy, skin = scene.motion.between(frame.state, frame.part)
+def _drawn(scene: _Scene, k: int, part: float, figure: Figure) -> Image.Image:
+    """Return the picture of a part of the way from a state to the next one, drawn on a figure with panels."""
+    xy, skin = scene.motion.between(k, part)
     with style.look():
         whole, forces, near, stress = figure.axes
         for ax in figure.axes:
             ax.clear()
-        figure.suptitle(_words(scene.states[frame.state]))
+        figure.suptitle(_words(scene.states[k]))
         _draw_finger(whole, scene, _MM * xy, None)
         _draw_finger(near, scene, _MM * xy, scene.half)
         whole.add_artist(Rectangle((-scene.half, _LOW), 2 * scene.half, _HIGH - _LOW, fill=False, ls="--"))
-        _draw_change(near, scene, frame.state)
+        _draw_change(near, scene, k)
         _draw_stress(stress, scene, skin)
-        _draw_forces(forces, scene.states, frame)
+        _draw_forces(forces, scene.states, k + part)
         style.save(figure, None)
         figure.set_dpi(_DPI)
         canvas = FigureCanvasAgg(figure)
@@ -280,24 +273,21 @@ def _draw_stress(ax: Axes, scene: _Scene, skin: Array) -> None:
     named: list[Any] = [Patch(color=style.BLACK, label="contact pressure, sticks")]
     named += [Patch(color=style.VERMILION, label="slips")] if scene.mu_0 else []
     named += [Line2D([], [], color=style.ATTRACTION, label="attraction, downward")]
-    ax.legend(handles=named, loc="lower left", bbox_to_anchor=(0, 1), ncols=3, fontsize=8, borderaxespad=0.1)
+    ax.legend(handles=named, **_LEGEND)
 
 
-def _draw_forces(ax: Axes, states: Sequence[ContactState], frame: _Frame) -> None:
+def _draw_forces(ax: Axes, states: Sequence[ContactState], now: float) -> None:
     """Draw the forces over the states, up to a frame in full colour."""
-    at, k = np.arange(len(states)), frame.state + frame.part
-    rows = (
-        ("external force f_ext", "f_ext", style.GREY, "--"),
-        ("attraction f_el", "f_electrostatic", style.BLUE, "-"),
-        ("friction f_T", "f_t", style.VERMILION, "-."),
-    )
-    top = 0.0
-    for label, name, colour, dash in rows:
-        values = np.array([getattr(state, name) for state in states], dtype=float)
-        done = np.append(at[at <= k], k)
+    at, top = np.arange(len(states)), 0.0
+    for key, colour, dash in (
+        ("f_ext", style.GREY, "--"), ("f_electrostatic", style.BLUE, "-"), ("f_t", style.VERMILION, "-.")
+    ):  # fmt: skip
+        values = np.array([getattr(state, key) for state in states], dtype=float)
+        done = np.append(at[at <= now], now)
+        reached = np.interp(done, at, values)
         ax.plot(at, values, color=colour, lw=0.8, alpha=0.35, ls=dash)
-        ax.plot(done, np.interp(done, at, values), color=colour, lw=2, ls=dash, label=label)
-        ax.plot(k, np.interp(k, at, values), "o", color=colour, ms=5)
+        ax.plot(done, reached, color=colour, lw=2, ls=dash, label=STEPS[key].words)
+        ax.plot(now, reached[-1], "o", color=colour, ms=5)
         top = max(top, float(np.nanmax(values)))
     begins = 0
     for load, mine in by_load(states):
@@ -306,7 +296,7 @@ def _draw_forces(ax: Axes, states: Sequence[ContactState], frame: _Frame) -> Non
         begins += len(mine)
     ax.set(xlim=(0, max(len(states) - 1, 1)), ylim=(min(0.0, -0.02 * top), 1.2 * top or 1.0))
     ax.set(xlabel="step of the run", ylabel="force (N/m)")
-    ax.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=3, fontsize=8, borderaxespad=0.1)
+    ax.legend(**_LEGEND)
 
 
 def _save(path: Path, pictures: Sequence[Image.Image]) -> None:
