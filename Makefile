@@ -19,7 +19,7 @@
 # make viscosity  how skin relaxes, energy of random histories, friction after a step of voltage; docs/laws.md
 # make loads  seeded scenes of people's loads beside the closed form; docs/closed_form.md, an hour or two in pieces of twenty minutes
 # make feel   what people and nerves were measured to do beside spikes; docs/measured.md, ten minutes
-# make performance  counts, ratios and seconds, part by part, on an idle machine; docs/performance.md, half an hour; prints the targets
+# make performance  counts, ratios and seconds, part by part, on an idle machine; docs/performance.md, half an hour
 # make calibration  estimated errors beside known ones, scene by scene; docs/errors.md, ten minutes
 # make chart  error over work, one numerical setting after the other; docs/errors.md and chart.md, half an hour or more
 #

@@ -19,7 +19,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from benchmarks import errors, harness, targets
+from benchmarks import errors, harness
 from benchmarks.errors import STATES, parted
 from benchmarks.limits import Limit
 from benchmarks.runs import finished
@@ -173,7 +173,6 @@ def draw(docs: Path) -> Path:
     harness.picture(docs / "chart.png", (9, 7), lambda figure: _paint(figure, points, reference))
     names = {"points": points, "reference": reference, "default": _default(points)}
     names |= {"words": _words, "linear": next((p for p in points if p.label == "P1"), None)}
-    names["targets"] = targets.rows(docs)
     return harness.page(docs, "chart", "make chart", globals() | names, "errors")
 
 

@@ -2,8 +2,8 @@
 
 environment/run python3 -m benchmarks.models [--jobs 2] [--draw]     twenty minutes, mostly full runs
 
-The full runs have a contact size of 10 um. Four more are at loads that no number of a model comes from, and a few
-beyond these forces and voltages. Writes docs/models.json and numbers of docs/closed_form.md,
+The full runs have a contact size of 10 um. Four more are at loads that no number of a model comes from.
+Writes docs/models.json and numbers of docs/closed_form.md,
 and prints what fingerpad/reduced has of them: the lengths that the cylinders interpolate, and their known error. Where
 the lengths differ they are put there, and the command is given again, which runs the cylinders alone.
 """
@@ -21,26 +21,14 @@ from benchmarks.runs import FORCES, VOLTAGES, trace
 from fingerpad.reduced import cylinder_errors, cylinders, default_finger
 from fingerpad.results.quantities import RESULTS
 from fingerpad.runs.batch import Summary
-from fingerpad.scene import Scene, load
-from fingerpad.scene.reading import override
+from fingerpad.scene import Scene
 
-_SOFT = ("subcutis", "dermis", "viable_epidermis")
 _LIMIT = 3600.0  # s of processor time for one run
 SIZE = 10e-6  # m, contact size
 QUANTITIES = ("full_slip_mu_app", "full_slip_contact_length", "charged_contact_length", "charged_f_electrostatic")
 _COST = ("seconds", "factorisations", "unknowns")
 HELD_OUT = ((8.2, 153.0), (20.8, 124.0), (34.2, 136.0), (38.7, 153.0))  # N/m, V; no model has a number from these loads
-_MESH = ("mesh.contact=10e-6", "mesh.receptor=20e-6")  # as the scenes over forces and voltages have it
-HALF_STEPS = "half the steps"
-BEYOND = {  # words: changes of the default scene, beside the mesh's
-    "little force": ("f_ext=2",),
-    "much friction": ("friction=1",),
-    "hardly compressible": tuple(f"materials.{layer}.poisson=0.499" for layer in _SOFT),
-    "twice the voltage": ("f_ext=10", "voltage=400", "mesh.touching_half_arc=3.9e-3"),
-    HALF_STEPS: ("f_ext=120", "voltage=150", "numerics.step_scale=0.5"),
-}
 _ROUNDOFF = 1e-6  # of a tenth of a per cent
-_KEPT = ("full_slip_mu_app", "full_slip_ridges_in_contact", "factorisations", "newton_iterations")
 
 
 # -- numbers -------------------------------------------------------------------------------------------------
@@ -59,11 +47,6 @@ def held_out() -> dict[str, Scene]:
     return {name(f, u): trace(f, u, SIZE) for f, u in HELD_OUT}
 
 
-def beyond() -> dict[str, Scene]:
-    """Return the scenes beyond these forces and voltages by their words."""
-    return {words: load(None, dict(map(override, (*changes, *_MESH)))) for words, changes in BEYOND.items()}
-
-
 def answer(summary: Summary) -> dict[str, Any]:
     """Return the numbers of a run or of a reduced model that docs/models.json has."""
     if "failure" in summary:
@@ -76,15 +59,12 @@ def answer(summary: Summary) -> dict[str, Any]:
 
 def compute(args: argparse.Namespace) -> None:
     """Run what is missing and keep the numbers."""
-    wanted, others = scenes() | held_out(), harness.run(beyond(), args, _LIMIT)
-    full = harness.run(wanted, args, _LIMIT)
-    keys = (*_KEPT, "full_slip", "failure")
+    full = harness.run(scenes() | held_out(), args, _LIMIT)
     kept = {
         "scenes": {key: answers(scene, full[key]) for key, scene in scenes().items()},
         "held_out": {key: answers(scene, full[key]) for key, scene in held_out().items()},
-        "beyond": {words: {key: summary.get(key) for key in keys} for words, summary in others.items()},
     }
-    harness.keep("models", kept, harness.made([*full.values(), *others.values()]), args.docs)
+    harness.keep("models", kept, harness.made(full.values()), args.docs)
     print(in_the_program(kept))
 
 

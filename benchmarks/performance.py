@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks import harness, targets
+from benchmarks import harness
 from benchmarks.harness import keep, kept, made
 
 FACTORS = (2.0, 1.4, 1.0, 0.7, 0.5, 0.31)  # on the element sizes of the default scene
@@ -138,7 +138,6 @@ def main(given: Sequence[str] | None = None) -> int:
     if not args.draw:
         measure(args.part or list(PARTS), args.docs)
     print(draw(args.docs))
-    print(targets.text(args.docs))
     return 0
 
 

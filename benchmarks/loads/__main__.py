@@ -11,10 +11,9 @@ and the number of shear of fingerpad/reduced/cylinders.py.
 """
 
 import argparse
-import itertools
 import json
 import sys
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -39,12 +38,10 @@ from benchmarks.loads.compared import (
 )
 from benchmarks.loads.meshes import errors, without
 from benchmarks.loads.scenes import COUNT, MESHES, Data, scenes, section
-from benchmarks.loads.shear import Point, Spread, fitted, points
-from benchmarks.loads.shear import spread as errors_of
+from benchmarks.loads.shear import fitted, points
 from benchmarks.loads.states import by_scene, pressed, short, solved
 from fingerpad.reduced import default_finger
 from fingerpad.reduced.cylinder_errors import REGIONS, WHOLE, find
-from fingerpad.reduced.cylinders import SHEAR
 from fingerpad.results.files import replace
 from fingerpad.scene import Scene
 
@@ -130,8 +127,7 @@ def draw(docs: Path) -> Path:
         "regions": (rows := [*judged_levels(levels(compared, whole))]),
         "known_all": [each.error for each in rows if each.error is not None],
         "near": [each.error for each in rows if each.error is not None and each.pull == PULLED[0]],
-        "shears": by_shear(both_have), "known_friction": Scene().friction, "kappa": fitted(both_have),
-        "ridges": most_ridges_fewer(both_have),
+        "known_friction": Scene().friction, "kappa": fitted(both_have),
         "fresh": {key: fresh.beside(drawn["scenes"], key, mesh) for key in ("mu_app", "contact_length")},
         "known": [REGIONS[0].errors[key]["f_electrostatic"] for key in ("full_slip", WHOLE)],
         "lost": [each for each in states if "failure" in each],
@@ -183,34 +179,6 @@ def judged(band: Band, region: Mapping[str, Any] | None, words: str, pull: float
     inside = [covered(some, error) for some, error in zip((band.tests, tests), errors, strict=True)]
     return Judged(words, pull, limits, numbers[0], 100 * errors[0], numbers[1], inside[0], numbers[2], 100 * errors[1],
                   numbers[3], inside[1])  # fmt: skip
-
-
-def most_ridges_fewer(every: Iterable[Point]) -> int:
-    """Return by how many ridges at most a sheared finger has fewer in contact than the tables of the closed form."""
-    states = [each.state for each in every]
-    return max(int(default_finger.ridges(state["f_ext"], "full_slip")) - state["ridges_in_contact"] for state in states)
-
-
-class Sheared(NamedTuple):
-    """Points of a band of the friction coefficient, without and with shear."""
-
-    friction: str
-    role: str
-    points: int
-    without: Spread
-    own: Spread
-
-
-def by_shear(every: Sequence[Point]) -> list[Sheared]:
-    """Return what shear changes by band, of the points that make errors and of those that test them."""
-    found = []
-    for low, high in itertools.pairwise(BANDS):
-        band = [each for each in every if low <= each.values["friction"] <= high]
-        for role, test in (("make", False), ("test", True)):
-            some = [each for each in band if fits(each) != test]
-            parts = (errors_of(some, shear) for shear in (0.0, SHEAR))
-            found.append(Sheared(f"{low:g} to {high:g}", role, len(some), *parts))
-    return found
 
 
 def _paint(figure: Figure, every: Sequence[Compared]) -> None:
