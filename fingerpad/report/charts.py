@@ -28,8 +28,8 @@ class Series:
     """Values over the scale along x; NaN breaks a line."""
 
     name: str
-    x: Sequence[float]
-    y: Sequence[float]
+    x: Sequence[float] | np.ndarray
+    y: Sequence[float] | np.ndarray
     kind: str = "line"
     """``line``, ``points``, ``both``, or ``ticks``, short upright lines."""
     colour: str = "ink"

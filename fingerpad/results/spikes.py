@@ -163,7 +163,7 @@ class Spikes:
         }
         variables = {}
         for name, (values, kind, unit, meaning) in words.items():
-            array = np.array(values, kind)
+            array: np.ndarray = np.array(values, kind)
             variables[name] = ("unit", "spike")[: array.ndim], array, {"units": unit, "long_name": meaning}
         return xarray.Dataset(variables, attrs=attributes)
 

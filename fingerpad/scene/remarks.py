@@ -174,7 +174,10 @@ def _changed(scene: "Scene") -> list[str]:
     """Return the keys of the finger's name that have other values in the scene."""
 
     def value(key: str) -> Any:
-        return reduce(lambda found, part: getattr(elastic(found), part, None), key.split("."), scene)
+        found: Any = scene
+        for part in key.split("."):
+            found = getattr(elastic(found), part, None)
+        return found
 
     return [key for key, usual in FINGERS[scene.finger].values.items() if value(key) != usual]
 

@@ -177,7 +177,7 @@ def animate(result: ResultData, path: Path, on_frame: Callable[[int, int], None]
     highest = _KPA * max(float(np.nanmax(found.skin[:, [1, 3]])), 1.0)
     scene = _Scene(states, found, coefficient(result.scene), half, highest)
     frames, figure, pictures = _frames(states), style.figure(_HEIGHT), list[Image.Image]()
-    rows = [["whole"] * 2 + ["forces"] * 3, ["near"] * 5, ["stress"] * 5]
+    rows: Any = [["whole"] * 2 + ["forces"] * 3, ["near"] * 5, ["stress"] * 5]
     figure.subplot_mosaic(rows, height_ratios=(6, 4, 4))
     for k, part in frames:
         pictures.append(_drawn(scene, k, part, figure))
