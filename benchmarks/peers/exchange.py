@@ -125,7 +125,7 @@ class Ridge:
     @property
     def skin_pairs(self) -> set[frozenset[int]]:
         """Vertices of the edges that can touch."""
-        return {frozenset(pair) for pair in self.skin[:, :2].tolist()}
+        return {frozenset((int(a), int(b))) for a, b in self.skin[:, :2]}
 
     def save(self, path: Path) -> None:
         """Write the mesh as .npz."""
@@ -177,7 +177,7 @@ class Answer:
     def report(self, load: Load, f_n: float, f_t: float, displacement: Array, p_n: Array) -> None:
         """Add a state if the load has a name."""
         if load.name:
-            shown = np.asarray(displacement).tolist()
+            shown: list[list[float]] = [[float(x), float(y)] for x, y in displacement]
             self.states.append(State(load.name, float(f_n), float(f_t), shown, float(np.max(p_n))))
 
     @classmethod

@@ -24,7 +24,7 @@ def mesh_of(ridge: Ridge) -> ng.Mesh:
         mesh.Add(netgen.Element2D(body, [points[k] for k in corners]))
     on = {"skin": ridge.skin_pairs.__contains__, "top": {*ridge.top}.issuperset, "sides": {*ridge.sides}.issuperset}
     regions = {name: mesh.AddRegion(name, dim=1) for name in on}
-    for a, b, c in ridge.triangles[:, :3].tolist():
+    for a, b, c in (map(int, corners) for corners in ridge.triangles[:, :3]):
         for pair in ((a, b), (b, c), (c, a)):
             for name in (name for name, holds in on.items() if holds(frozenset(pair))):
                 mesh.Add(netgen.Element1D([points[k] for k in pair], index=regions[name]))

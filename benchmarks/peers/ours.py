@@ -39,13 +39,14 @@ def for_peers(body: TaggedMesh) -> Ridge:
     used = np.unique(nodes[:, :3])
     corners, cells = x[used], np.searchsorted(used, nodes[:, :3])
     opposite = np.sort(cells[:, [[1, 2], [0, 2], [0, 1]]].reshape(-1, 2), axis=1)
+    edges: np.ndarray
     edges, first = np.unique(opposite, axis=0, return_index=True)
     clockwise = np.linalg.det(corners[cells[:, 1:]] - corners[cells[:, :1]]) < 0
     cells[clockwise, 1:] = cells[clockwise, :0:-1]
     pairs = np.sort(cells[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
     number = np.unique(pairs, axis=0, return_inverse=True)[1]
     triangles = np.hstack([cells, len(corners) + number.reshape(-1, 3)])
-    middle_of = {frozenset(edge): len(corners) + k for k, edge in enumerate(edges.tolist())}
+    middle_of = {frozenset((int(a), int(b))): len(corners) + k for k, (a, b) in enumerate(edges.reshape(-1, 2))}
 
     def edges_of(tag: int) -> np.ndarray:
         facets = body.facet_tags.find(tag)

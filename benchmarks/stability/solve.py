@@ -11,6 +11,7 @@ glued to the bone would hold the epidermis up. They are free only where dermis i
 
 import json
 import sys
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from functools import partial
 from typing import Any
@@ -25,6 +26,7 @@ from geometry.mesh import load
 from geometry.parameters import Fingertip, MeshSize
 from variational.body import Body
 from variational.contact.augmented import AugmentedLagrangian
+from variational.contact.formulation import Formulation
 from variational.contact.interface import Interface
 from variational.contact.nitsche import Nitsche
 from variational.contact.penalty import Penalty
@@ -33,7 +35,7 @@ from variational.roughness.bam import BearingArea
 from variational.solvers.continuation import Attempt, Continuation, StepFailed, Target
 from variational.solvers.outcome import NotConverged
 
-FORMULATIONS = {  # by their one numerical parameter
+FORMULATIONS: dict[str, Callable[[float], Formulation]] = {  # by their one numerical parameter
     "penalty": lambda eps_n: Penalty(eps_n, 5e10),
     "augmented": lambda eps_n: AugmentedLagrangian(eps_n, eps_n / 30, 5e-9),
     **{f"Nitsche, θ = {theta}": partial(Nitsche, theta=theta) for theta in (0, 1, -1)},
@@ -124,7 +126,7 @@ def run(case: Case) -> Outcome:
         state = walk.surface_state
         loads = body.observer.ridge_loads(state)
         out.cutbacks += len(attempt.cutbacks)
-        jumps.append(attempt.pseudo_transient)
+        jumps.append(bool(attempt.pseudo_transient))
         out.penetration = float(np.max(-state.y[state.p_n > 0], initial=0.0))
         out.f_ext = float(solver.reaction[1])
         # What the screen exerts on the skin: carried faces bear a part that the bone does not bear.

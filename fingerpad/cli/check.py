@@ -214,6 +214,7 @@ def _draw(file: Path, found: Section, scene: Scene) -> None:
     """Draw the mesh: the whole finger, some ridges, and one ridge's tip; layers in colour, axes in mm."""
     from matplotlib.colors import ListedColormap
     from matplotlib.patches import Patch
+    from matplotlib.tri import Triangulation
 
     from fingerpad.results.pictures.finger import LAYER_COLOURS
 
@@ -241,8 +242,9 @@ def _draw(file: Path, found: Section, scene: Scene) -> None:
                 centre = found.points[found.triangles].mean(axis=1)
                 inside = (np.abs(centre[:, 0] - x) < 1.2 * view[0]) & (centre[:, 1] < 1.2 * view[1])
             width = 0.25 if view is not None else 0.05 if len(kinds) < _FINEST_EDGES else 0.0
+            seen = Triangulation(places[:, 0], places[:, 1], found.triangles[inside])
             ax.tripcolor(
-                *places.T, found.triangles[inside], facecolors=kinds[inside].astype(float), vmin=-0.5,
+                seen, facecolors=kinds[inside].astype(float), vmin=-0.5,
                 vmax=len(colours) - 0.5, cmap=ListedColormap(list(colours.values())), linewidth=width,
                 edgecolors="k" if width else "face",
             )  # fmt: skip

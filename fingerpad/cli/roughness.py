@@ -81,10 +81,8 @@ def microscale(argv: Sequence[str]) -> int:
     echo(least if sticking else "No voltage makes a ridge stick: the insulators are thick for this roughness.")
     for text in examine("scene", scene):
         echo(f"{text}.")
-    for text in map(
-        str, closure.cautions([(row["p_c"], 1.0, row["voltage"]) for row in rows], "pressures and voltages")
-    ):
-        echo(f"{text[0].upper()}{text[1:]}.")
+    for each in closure.cautions([(row["p_c"], 1.0, row["voltage"]) for row in rows], "pressures and voltages"):
+        echo(f"{each.text[0].upper()}{each.text[1:]}.")
     output.write_files(args, _COLUMNS, rows, _draw_microscale)
     return 0
 

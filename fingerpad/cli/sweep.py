@@ -47,8 +47,9 @@ def main(argv: Sequence[str]) -> int:
     try:
         with raising_at_ctrl_c():
             found = sweep(
-                scene, args.out, jobs=args.jobs, model=args.model, quiet=args.quiet, states=args.states, **axes
-            )
+                scene, args.out, jobs=args.jobs, model=args.model, quiet=args.quiet, states=args.states, executor=None,
+                **axes,
+            )  # fmt: skip
     except (KeyboardInterrupt, SystemExit):  # of signals
         print(f"fingerpad: stopped; points are kept in {args.out}, and the same command goes on", file=sys.stderr)
         raise

@@ -221,8 +221,12 @@ def computed(source: Source | Sequence[Source], table: Measured) -> Computed:
         SceneError: the source is of another type, the quantity is not there, the runs differ in more than force and
             voltage, or two of them have other values at the same force and voltage.
     """
-    found, many = list[Any](), isinstance(source, Sequence) and not isinstance(source, Sweep | str | bytes)
-    for each in source if many else [source]:
+    found = list[Any]()
+    many = isinstance(source, Sequence) and not isinstance(source, Sweep | str | bytes)
+    sources: Any = source
+    if not many:
+        sources = [source]
+    for each in sources:
         refuse_type("result", each, Source, _SOURCES)
         found += each if isinstance(each, Sweep) else [content(Path(each)) if isinstance(each, str | Path) else each]
     if not found:

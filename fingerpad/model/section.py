@@ -75,14 +75,14 @@ def section(scene: Scene, needed: ModelOptions) -> Section:
     if scene.geometry.file is None:
         with _meshed(scene, needed.receptors, not needed.both_halves) as gmsh:
             return _read(gmsh)
-    import gmsh
+    import gmsh as program
 
     from geometry import meshfile
     from geometry.shape import built, session
 
     try:
         with session("file"):
-            return _read(gmsh, built(meshfile.file(scene.geometry.file, scene.geometry.file_sha256 or "")))
+            return _read(program, built(meshfile.file(scene.geometry.file, scene.geometry.file_sha256 or "")))
     except GeometryError as error:
         raise SceneError(f"mesh: {error}") from None
 

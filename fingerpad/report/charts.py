@@ -137,14 +137,14 @@ def _panel(panel: Panel, top: float, across: Any) -> dict[str, Any]:
 
 
 def _error(series: Series, k: int, y: float) -> tuple[float, ...]:
-    error = series.error[k] if len(series.error) else math.nan
+    error = float(series.error[k]) if len(series.error) else math.nan
     return () if math.isnan(error) else (y - error, y + error)
 
 
 def _drawn(series: Series, across: Any, up: Any) -> dict[str, Any]:
     """Return a series as a path and marks, in px."""
     points = np.array([[across(x), up(y)] for x, y in zip(series.x, series.y, strict=True)]).reshape(-1, 2)
-    known = [(k, x, y) for k, (x, y) in enumerate(points.tolist()) if not math.isnan(x + y)]
+    known = [(k, float(x), float(y)) for k, (x, y) in enumerate(points) if not math.isnan(x + y)]
     points[(points[:, 0] < _LEFT - 1) | (points[:, 0] > _WIDTH - _RIGHT + 1)] = math.nan
     path = _line(points) if series.kind in ("line", "both") else ""
     if series.kind == "ticks":

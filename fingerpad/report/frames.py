@@ -95,8 +95,8 @@ def _drawn(
 ) -> Markup:  # fmt: skip
     """Return the finger near the contact above the stresses along its skin, with words on each ridge."""
     x = _MM * skin["x"]
-    panels = [Panel("stress (kPa)", [Series(name, x, _KPA * skin[key], "line", *how) for key, name, *how in _STRESSES],
-                    ends=scale)]  # fmt: skip
+    lines = [Series(name, x, _KPA * skin[key], "line", colour, dash) for key, name, colour, dash in _STRESSES]
+    panels = [Panel("stress (kPa)", lines, ends=scale)]
     if view.snapshot is not None:
         top = min(_ABOVE, _BELOW + _HIGHEST * (ends[1] - ends[0]))
         high = _WIDE * (top - _BELOW) / (ends[1] - ends[0])

@@ -113,7 +113,7 @@ def _sliding(result: Result) -> dict[str, Any] | None:
         series = [Series(of.words, x, [of.scale * getattr(s, key) for s in steps], "both", colour, dash, labels=words)]
         hit = [(place, of.scale * getattr(s, key)) for place, s in zip(x, steps, strict=True) if trust.jumped(s)]
         if hit:
-            series.append(Series("jump", *zip(*hit, strict=True), "points", "vermilion"))
+            series.append(Series("jump", [x for x, _ in hit], [y for _, y in hit], "points", "vermilion"))
         known = [
             (name, s) for name, s in result.named.items() if not math.isnan(getattr(s.error, key) + getattr(s, key))
         ]
@@ -134,7 +134,7 @@ def _sliding(result: Result) -> dict[str, Any] | None:
 
 def _receptors(result: Result) -> list[tuple[str, ...]]:
     """Return a row for each named state: the largest densities at Merkel sites, with its ridge, and Meissner sites."""
-    rows = []
+    rows = list[tuple[str, ...]]()
     for name, state in result.named.items():
         if (sites := state.sites) is not None and len(sites.number):
             merkel, meissner = _KPA * sites.merkel, _KPA * np.maximum(sites.left, sites.right)
@@ -159,10 +159,11 @@ def _raster(result: Result, spikes: Spikes) -> Markup:
     states = [state for k, state in enumerate(states) if k == len(states) - 1 or states[k + 1].time > 0]
     chosen = [states[int(k)] for k in np.unique(np.linspace(0, len(states) - 1, _MAX_STATES).round())]
     pressures = [_KPA * np.asarray(state.ridges.p_c) for state in chosen if state.ridges is not None]
-    numbers = [] if not chosen or chosen[0].ridges is None else chosen[0].ridges.number
+    numbers: Any = [] if not chosen or chosen[0].ridges is None else chosen[0].ridges.number
     time = [_MS * state.time for state in chosen]
     ridges = [
-        Series(f"ridge {number}", time, each) for number, each in zip(numbers, np.transpose(pressures), strict=True)
+        Series(f"ridge {number}", time, np.asarray(each))
+        for number, each in zip(numbers, np.transpose(pressures), strict=True)
     ]
     panels = [Panel("pressure (kPa)", [each for each in ridges if max(each.y) > 0])]
     for law, colour in zip(spikes.laws, cycle(("blue", "vermilion", "ink", "green", "purple")), strict=False):

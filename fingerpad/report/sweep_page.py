@@ -107,10 +107,17 @@ def table_of(folder: Path) -> Table:
         axes, rows = tuple(found["axes"]), tuple(found["rows"])
         if not (axes and rows and all({*axes, "failure"} <= row.keys() == rows[0].keys() for row in rows)):
             raise ValueError("its rows have no value of a varied key")
-        texts = (tuple(map(str, found[key])) for key in ("cautions", "notes"))
-        outputs = tuple(Output(**each) for each in found["outputs"])
-        about = dict(found["parameters"]), model_name(found["model"]), str(found.get("version", ""))
-        return Table(folder, axes, rows, *about, *texts, outputs)
+        return Table(
+            folder,
+            axes,
+            rows,
+            dict(found["parameters"]),
+            model_name(found["model"]),
+            str(found.get("version", "")),
+            tuple(map(str, found["cautions"])),
+            tuple(map(str, found["notes"])),
+            tuple(Output(**each) for each in found["outputs"]),
+        )
     except KeyError as missing:
         raise SceneError(f"{FILE} in {name} has no {missing}; give the command of the sweep again") from None
     except SceneError:

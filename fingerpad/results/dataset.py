@@ -309,7 +309,8 @@ def values(result: ResultData) -> dict[str, Any]:
 
 def summary(result: ResultData) -> dict[str, Any]:
     """Return a result without its headline as ``summary.json`` has it."""
-    last = result.steps[-1] if result.steps else next(reversed(result.named.values()), None)
+    reached = (*result.named.values(), *result.steps)
+    last = reached[-1] if reached else None
     found: dict[str, Any] = {"format": files.FORMAT, "model": result.model, "full_slip": result.full_slip is not None}
     found |= {key: 0.0 if last is None else getattr(last, key) for key in ("f_ext", "voltage")}
     found |= asdict(result.cost) | values(result) | ({} if result.finger is None else result.finger.flat())

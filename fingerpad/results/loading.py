@@ -82,7 +82,9 @@ def parts(data: "xarray.Dataset") -> dict[str, Any]:
             record["parameters"] = parameters
         steps = tuple(_state(arrays, "", k, own) for k in range(len(arrays.get("step", ()))))
         there = {name: k for k, name in enumerate(STATES) if arrays["state_step"][k] >= 0}
-        found = {name: _named_state(arrays, there[name], own) if name in there else None for name in STATES}
+        found: dict[str, Any] = {
+            name: _named_state(arrays, there[name], own) if name in there else None for name in STATES
+        }
         stable = dict(zip(arrays["load_last_step"], arrays["load_stable"], strict=True)) if steps else {}
         loads = load_results(
             steps, scene.loads(), lambda end: {0: False, 1: True}.get(stable.get(end.step, -1)), coefficient(scene)

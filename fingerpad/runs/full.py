@@ -24,7 +24,6 @@ from fingerpad.results.interrupt import Interrupt, Interrupted, all_together, no
 from fingerpad.results.provenance import check_options, provenance, refuse_unread
 from fingerpad.results.quantities import Output
 from fingerpad.results.result import Result
-from fingerpad.results.states import STATES
 from fingerpad.results.terminal import Console, in_words
 from fingerpad.results.writing import Writer
 from fingerpad.runs import post
@@ -299,7 +298,7 @@ class _Attempt:
         bare = Result(
             scene,
             DEFAULT_MODEL,
-            *(named.get(name) for name in STATES),
+            *(named.get("uncharged"), named.get("charged"), named.get("full_slip")),
             steps=tuple(record.states),
             loads=tuple(record.loads(scene.loads(), mu_0)),
             cost=session.clock.cost(finger.solver.counts, unknowns),

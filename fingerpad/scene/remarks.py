@@ -8,7 +8,6 @@ an alternating one, so that it has a note alone. The mean of a waveform is a con
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import fields
-from functools import reduce
 from typing import TYPE_CHECKING, Any
 
 import numpy as np

@@ -323,7 +323,12 @@ def raster(found: Any, path: Path | str | None) -> Figure:
             for ax in panels:
                 ax.axvline(begin, color=style.GREY, lw=0.8, ls=":")
             if last - begin > _NAMED * end:
-                above: dict[str, Any] = {"transform": panels[0].get_xaxis_transform(), "ha": "center", "va": "bottom", "fontsize": 9}
+                above: dict[str, Any] = {
+                    "transform": panels[0].get_xaxis_transform(),
+                    "ha": "center",
+                    "va": "bottom",
+                    "fontsize": 9,
+                }
                 panels[0].text((begin + last) / 2, 1.0, style.plain(load.name), **above)
         panels[-1].set(xlabel="time (ms)", xlim=(0, end))
         return style.save(figure, path)

@@ -188,7 +188,7 @@ def density(ax: Axes, snapshot: "Snapshot", scale: Scales) -> None:
     xy, span = _MM * (snapshot.x + snapshot.u), norm(scale)
     seen = snapshot.triangles[near := _visible(xy[snapshot.triangles], scale.near)]
     shown = np.clip(_KPA * snapshot.sed[near], span.vmin, span.vmax)
-    ax.tripcolor(*xy.T, seen, shown, norm=span, cmap=style.MAGNITUDE, rasterized=True)
+    ax.tripcolor(xy[:, 0], xy[:, 1], shown, triangles=seen, norm=span, cmap=style.MAGNITUDE, rasterized=True)
     left, right, bottom, top = scale.near
     low, high, places = np.array([left, bottom]), np.array([right, top]), xy[snapshot.lines]
     inside = ((places.max(axis=1) > low) & (places.min(axis=1) < high)).all(axis=1)
