@@ -5,6 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import fingerpad as fp
+from benchmarks.measured import drives
 from variational.attraction.circuit import GapCircuit, Network, fit_leak
 from variational.attraction.dielectric import DRY, MOIST, VACUUM_PERMITTIVITY, TabledTissue, insulator_thickness
 
@@ -192,3 +193,13 @@ def test_share_is_refused(frequency, gap, words):
     circuit = GapCircuit(TabledTissue((10, 1000), (2000, 1000), (1e-4, 1e-3)))
     with pytest.raises(ValueError, match=words):
         circuit.share(frequency, gap, *BEHIND)
+
+
+def test_impedance_of_a_sliding_finger():
+    """Of equal plates it goes with 1 over their length. At 10 Hz it hardly changes with a gap that the leak shorts."""
+    gap, length = np.full((2, 3), 1.6e-6), np.full((2, 3), 2e-3)
+    numbers, verdict = drives.sliding((gap, length), (gap, length / 2))
+    assert_allclose((numbers["low"], numbers["high"]), 1.0)
+    assert verdict == "hit" and numbers["leak"] == pytest.approx(308, abs=1)
+    numbers, verdict = drives.sliding((gap, length), (1.1 * gap, length))
+    assert abs(numbers["low"]) < 0.01 and 0.05 < numbers["high"] < 0.1 and verdict == "miss"

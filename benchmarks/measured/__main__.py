@@ -3,9 +3,9 @@
 environment/run python3 -m benchmarks.measured [--jobs 2] [--draw]
 
 Most numbers are those of docs/paper.json, docs/models.json and docs/viscosity.json (make paper, benchmarks.models, make
-viscosity), to be made again after them. Eight presses are run here, some ten seconds each, and one that
-is held for 20 s. Writes docs/measured.json, and from it docs/measured.md and its picture. A finding of the kind
-``simulated`` was computed by its source and does not count.
+viscosity), to be made again after them. Ten presses are run here, some ten seconds each, and one that is held for 20 s.
+Writes docs/measured.json, and from it docs/measured.md and its picture. A finding of the kind ``simulated`` was
+computed by its source and does not count.
 """
 
 import argparse
@@ -20,7 +20,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from benchmarks.harness import cells, keep, kept, made, main, page, picture, run
-from benchmarks.measured import fingers, keys, rows, rules
+from benchmarks.measured import drives, fingers, keys, rows, rules
 from benchmarks.measured.rules import BUILT, HIT
 from benchmarks.runs import VOLTAGES, Run
 from fingerpad.results.pictures import style
@@ -50,14 +50,18 @@ def pressed(scene: Scene, out: Path) -> dict[str, Any]:
 def numbers(runs: dict[str, Any], held: Mapping[str, list[float]], docs: Path) -> dict[str, Any]:
     """Return the numbers of the page from runs of :func:`pressed`, a held finger and the kept ones of other pages."""
     grid = rows.grid(kept("paper", docs).numbers, kept("models", docs).numbers)
-    # Where no scene has a key for a finding, or equations alone decide, the verdict is in the table of texts.
+    # Where no scene has a key for a finding, the verdict is in the table of texts.
     typed: dict[str, rows.Row] = {text["key"]: ({}, text["verdict"]) for text in _read("rows") if text["verdict"]}
     of_time = keys.of_time(kept("viscosity", docs).numbers, held)
+    every = {"rows": rows.numbers(grid, runs) | drives.numbers() | of_time | typed, "others": keys.others(runs)}
     judged = {
-        key: {"numbers": {each: float(value) for each, value in found.items()}, "verdict": verdict}
-        for key, (found, verdict) in (rows.numbers(grid, runs) | of_time | typed).items()
+        name: {
+            key: {"numbers": {each: float(value) for each, value in found.items()}, "verdict": verdict}
+            for key, (found, verdict) in table.items()
+        }
+        for name, table in every.items()
     }
-    return {"runs": runs, "held": held, "curves": rows.curves(grid), "rows": judged}
+    return {"runs": runs, "held": held, "curves": rows.curves(grid)} | judged
 
 
 def compute(args: argparse.Namespace) -> None:
@@ -94,6 +98,19 @@ def judged(docs: Path) -> list[Row]:
     return judged
 
 
+def with_keys(docs: Path) -> list[Row]:
+    """Return the findings that are computed with other keys too, in the order of ``others.csv``."""
+    found, first = kept("measured", docs).numbers["others"], {text["key"]: text for text in _read("rows")}
+    made_of = []
+    for text in _read("others"):
+        numbers, verdict = found[text["key"]].values()
+        verdict = BUILT if text["built"] and verdict == HIT else verdict
+        ours = text["ours"].format(**numbers).replace("%", " %")
+        line = cells(first[text["key"]]["measured"], text["keys"], ours, _number(text["fitted"]), f"**{verdict}**")
+        made_of.append(Row(text["key"], "other", numbers, verdict, line))
+    return made_of
+
+
 def _number(fitted: str) -> str:
     """Return how many parameters are fitted, without which ones."""
     return fitted.partition(" (")[0]
@@ -108,7 +125,7 @@ def draw(docs: Path) -> Path:
     """Write docs/measured.md and its picture from docs/measured.json."""
     picture(docs / "measured.png", (11, 4), lambda figure: _paint(figure, kept("measured", docs).numbers))
     every = judged(docs)
-    names: dict[str, Any] = {"judged": every, "sources": _read("sources")}
+    names: dict[str, Any] = {"judged": every, "others": with_keys(docs), "sources": _read("sources")}
     names |= {"left_out": sum(row.verdict == rules.MISS for row in every if row.key in _LEFT_OUT)}
     names |= {"found": [row.verdict for row in every if row.kind != "simulated"]}
     return page(docs, "measured", "make measured", globals() | names)

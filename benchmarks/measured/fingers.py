@@ -26,6 +26,7 @@ FORCE = 75.0  # N/m
 SIZES = (40e-6, 20e-6)  # m, contact sizes; the difference of their numbers is the stated error
 SOFTER = (2.0, 4.0)  # times, by which the stratum corneum is softened; not fitted
 ROUGHER = 1.0  # friction coefficient beside the default of 0.25
+FLAT = (1, -0.625, 0.27778, -0.08333, 0.01515, -0.00126)  # -sin(t/2)^12, a tip that is flat over half a ridge
 
 
 def name(kind: str, size: float) -> str:
@@ -39,6 +40,7 @@ def scenes() -> dict[str, Scene]:
     for softer in SOFTER:
         shear = Scene().materials.stratum_corneum.shear_modulus / softer
         kinds[f"soft {softer:g}"] = {"materials": {"stratum_corneum": {"shear_modulus": shear}}}
+    kinds["flat"] = {"geometry": {"ridge_profile": FLAT}}
     return {name(kind, size): pressed(size, more) for size in SIZES for kind, more in kinds.items()}
 
 

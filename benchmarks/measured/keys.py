@@ -1,7 +1,11 @@
-"""Findings over time, with keys that the default finger leaves out: the viscous preset "fingerpad" in all soft layers.
+"""Findings that the default finger cannot have, with keys of a scene that it leaves out.
 
-Force over time and friction after a step of the voltage are those of docs/viscosity.json. A press that is held for 20 s
-is run here.
+- Flat tips: ``geometry.ridge_profile`` of :data:`.fingers.FLAT`, flat over half a ridge. Pressed as the page's other
+  fingers.
+- Viscous layers: the preset "fingerpad" in all soft layers. Its force over time and its friction after a step of the
+  voltage are those of docs/viscosity.json; a press that is held for 20 s is run here.
+- A shear stress on the ridges in place of a friction coefficient: ``Derjaguin`` with mu_f of 0, by the closed form.
+- Boundary elements without a field in contact, at the pressures of ridges with flat tips.
 """
 
 from collections.abc import Mapping
@@ -10,15 +14,21 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import brentq
 
 from benchmarks import viscosity
 from benchmarks.measured import fingers, rules
-from benchmarks.measured.rules import HIT, RATIO, by_factor, by_form, by_share
-from benchmarks.runs import Run
+from benchmarks.measured.rules import HIT, RATIO, SIMILAR, by_factor, by_form, by_share
+from benchmarks.runs import FORCES, Run
+from fingerpad.reduced import cylinders
 from fingerpad.scene import Scene
+from variational.attraction.dielectric import VACUUM_PERMITTIVITY
+from variational.roughness.boundary_elements import BoundaryElements
 
 Array = NDArray[np.float64]
 Row = tuple[dict[str, float], str]
+SHEAR = 12.1e3  # Pa, on the ridges; makes mu_app of the default finger 0.25 at 0.5 N without voltage
+EFFECTIVE = (0.0, 70.7)  # V; 200 V from peak to peak at most
 GROWS = 20.0  # s, for which the real contact on glass was seen to grow
 GROWN = 0.95  # of the growth in that time
 
@@ -71,6 +81,64 @@ def _speed(known: Mapping[str, Any]) -> Row:
     return names, by_share(sum(holds) / len(holds))
 
 
+def _shear() -> dict[str, Row]:
+    """Judge how friction falls with the load where a shear stress limits it."""
+    sheared = Scene(voltage=0.0, friction={"law": "Derjaguin", "mu_f": 0.0, "tau_0": SHEAR})  # type: ignore[arg-type]
+    force: Array = np.array(FORCES)
+    mu: Array = np.array([state.mu_app for state in cylinders.over_forces(sheared, FORCES, "full_slip")])
+    factor, fall = float(mu.max() / mu.min()), float(1 - mu[-1] / mu[0])
+    misfit, line = (rules.of_each(form, force, mu).misfit for form in (rules.falling_power, rules.falling_line))
+    numbers = {"first": float(mu[0]), "last": float(mu[-1]), "factor": factor, "misfit": misfit, "line": line}
+    numbers["exponent"] = float(np.polyfit(np.log(force), np.log(mu), 1)[0])
+    verdicts = {
+        "friction_occluded": by_factor(factor, factor, 5.0, 5.0, RATIO),
+        "friction_acrylic": by_share(float(fall > SIMILAR)),
+        "friction_power": by_form((misfit,), (line,)),
+    }
+    return {key: (numbers, verdict) for key, verdict in verdicts.items()}
+
+
+def _flat(runs: Mapping[str, Any]) -> dict[str, Row]:
+    """Judge share of the ridges, form of the pressure and air gaps of a finger with flat tips."""
+    shares, fits, width = [], [], Scene().geometry.ridge_wavelength
+    for size in fingers.SIZES:
+        run = runs[fingers.name("flat", size)]
+        shares.append(run["length"] / fingers.gross(run))
+        points = np.array(run["place"]), np.array(run["pressure"])
+        fits.append([rules.of_largest(form, *points).misfit for form in (rules.paraboloid, rules.ellipse)])
+    coarse, fine = (runs[fingers.name("flat", size)] for size in fingers.SIZES)
+    law, each = BoundaryElements(Scene().h_0, field_in_contact=False), fine["length"] / fine["ridges"]
+    borne, of_coarse = (fingers.FORCE / run["length"] for run in (fine, coarse))
+    most = width * float(np.max(fine["pressure"])) / each
+    gaps = [1e6 * _gap(law, p, u) for p in (borne, most) for u in EFFECTIVE]
+    error = abs(1e6 * _gap(law, of_coarse, EFFECTIVE[0]) - gaps[0])
+    return {
+        "ridges": (
+            {"share": shares[-1], "error": abs(shares[-1] - shares[0])},
+            by_factor(shares[-1], shares[-1], 0.67, 0.67, RATIO),
+        ),
+        "pressure_shape": (
+            {"misfit": fits[-1][0], "error": abs(fits[-1][0] - fits[0][0]), "other": fits[-1][1]},
+            by_form((fits[-1][0],), (fits[-1][1],)),
+        ),
+        "gap": (
+            {"low": min(gaps), "high": max(gaps), "error": error, "mean": borne / 1e3, "most": most / 1e3},
+            by_factor(min(gaps), max(gaps), 1.5, 2.5),
+        ),
+    }
+
+
+def _gap(law: BoundaryElements, pressure: float, voltage: float) -> float:
+    """Return the air gap (m) of a flat ridge that is pressed from outside (Pa) and attracted by a voltage (V)."""
+
+    def excess(x: float) -> float:
+        p_c = np.exp(x)
+        return p_c - pressure - VACUUM_PERMITTIVITY * voltage**2 / 2 / (law.h_0 + float(law(p_c).d_eq)) ** 2
+
+    p_c = np.exp(brentq(excess, np.log(pressure * (1 - 1e-9)), np.log(law.pressures[1])))
+    return float(law(p_c).d_eq)
+
+
 def of_time(known: Mapping[str, Any], held: Mapping[str, list[float]]) -> dict[str, Row]:
     """Return the rows of time, which the default scene does not have.
 
@@ -79,3 +147,8 @@ def of_time(known: Mapping[str, Any], held: Mapping[str, list[float]]) -> dict[s
         held: what :func:`held` returns.
     """
     return {"time": _time(held), "relaxation": _relaxation(known), "speed": _speed(known)}
+
+
+def others(runs: Mapping[str, Any]) -> dict[str, Row]:
+    """Return rows of the default finger once more, with other keys."""
+    return _shear() | _flat(runs)

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks import models
-from benchmarks.measured import fingers, rules
+from benchmarks.measured import drives, fingers, rules
 from benchmarks.measured.rules import (
     CHANGED,
     EXPONENT,
@@ -28,9 +28,7 @@ from benchmarks.measured.rules import (
 )
 from benchmarks.runs import FORCES, VOLTAGES
 from fingerpad.scene import Scene
-from fingerpad.scene.drive import REFERENCE
 from fingerpad.scene.remarks import coefficient
-from variational.attraction.circuit import GapCircuit, fit_leak
 from variational.attraction.dielectric import VACUUM_PERMITTIVITY
 
 Array = NDArray[np.float64]
@@ -40,8 +38,6 @@ Row = tuple[Numbers, str]
 AMPLITUDES = ((100.0, 150.0), (50.0, 100.0))
 """Voltages (V) within an amplitude of 75 to 150 V: as a constant voltage, and as that of a sine's mean square."""
 
-PEAK = 250.0  # Hz, a published peak of the attraction, which sets the leak of the gap
-RISE = (10.0, 30.0, 100.0, 300.0, 1e3, 3e3, 1e4)  # Hz, at which the impedance is compared
 SHOWN = 0.5  # N, of the areas of asperities in mm²
 
 
@@ -218,26 +214,6 @@ def _plates(a: Mapping[str, Array], state: str) -> tuple[Array, Array]:
     return voltages * np.sqrt(VACUUM_PERMITTIVITY / 2 / pressure) - Scene().h_0, length
 
 
-def sliding(rest: tuple[Array, Array], slip: tuple[Array, Array]) -> Row:
-    """Judge by how much the impedance of screen, gap and skin rises from rest to full slip.
-
-    Args:
-        rest: air gap (m) and length in contact (m) at each force and voltage.
-        slip: the same at full slip.
-    """
-    scene, ends = Scene(), []
-    layers = scene.electric.d_i, scene.electric.eps_i, scene.geometry.sc_thickness
-    circuit = GapCircuit("dry", fit_leak(PEAK, "dry", REFERENCE, *layers))
-    for gap, length in (rest, slip):
-        f, g = np.array(RISE)[:, None], gap.ravel()
-        across = 1 / (2j * np.pi * f * VACUUM_PERMITTIVITY / g + 1 / circuit.resistance)  # of the gap alone
-        ends.append(np.abs(across / circuit.gain(f, g, *layers)) / length.ravel())
-    found = ends[1] / ends[0] - 1
-    low, high = float(found.min()), float(found.max())
-    numbers = {"low": low, "high": high, "leak": circuit.resistance}
-    return numbers, by_factor(max(low, 1e-9), max(high, 1e-9), 1.0, 10.0, RATIO)
-
-
 # -- runs of this page ---------------------------------------------------------------------------------------
 def _pressure(runs: Mapping[str, Any]) -> Row:
     """Judge a paraboloid beside half an ellipse, over the largest pressure."""
@@ -303,7 +279,7 @@ def numbers(g: Grid, runs: Mapping[str, Any]) -> dict[str, Row]:
         "friction_power": of_load["friction_power"],
         "softer": _softer(runs),
         "ridges": _ridges(g),
-        "gap_sliding": sliding(*(_plates(g.coarse, state) for state in ("charged", "full_slip"))),
+        "gap_sliding": drives.sliding(*(_plates(g.coarse, state) for state in ("charged", "full_slip"))),
         "friction_occluded": of_load["friction_occluded"],
         "gap": ({"low": low, "high": high}, by_factor(low, high, 1.5, 2.5)),
         "friction_input": ({"mu": mu_0}, by_factor(mu_0, mu_0, 0.25, 0.25)),

@@ -74,6 +74,11 @@ def line(x: Array, start: float) -> Array:
     return np.asarray(start + (1 - start) * x / x.max())
 
 
+def high_pass(x: Array, cut: float) -> Array:
+    """Return the square of a first-order high-pass, with a cut-off in units of the largest x."""
+    return np.asarray(x**2 / (x**2 + (cut * x.max()) ** 2))
+
+
 def first_order(x: Array, tau: float) -> Array:
     """Return 1 - exp(-x / tau), with a time in units of the largest x."""
     return np.asarray(-np.expm1(-x / (tau * x.max())))
@@ -82,6 +87,16 @@ def first_order(x: Array, tau: float) -> Array:
 def ramp(x: Array, end: float) -> Array:
     """Return a straight rise that ends at a part of the largest x, and stays."""
     return np.asarray(np.minimum(x / (end * x.max()), 1.0))
+
+
+def falling_power(x: Array, n: float) -> Array:
+    """Return (x / x_min)^-n."""
+    return np.asarray((x / x.min()) ** -n)
+
+
+def falling_line(x: Array, end: float) -> Array:
+    """Return a straight line from 1 down to a part of it."""
+    return np.asarray(1 - (1 - end) * (x - x.min()) / np.ptp(x))
 
 
 def paraboloid(x: Array, a: float) -> Array:
@@ -99,8 +114,11 @@ BOUNDS: dict[Form, tuple[float, float]] = {
     exponential: (1e-3, 50.0),
     power: (0.05, 10.0),
     line: (0.0, 0.99),
+    high_pass: (1e-4, 1.0),
     first_order: (1e-3, 10.0),
     ramp: (1e-3, 1.0),
+    falling_power: (1e-3, 10.0),
+    falling_line: (1e-3, 1.0),
     paraboloid: _WIDTHS,
     ellipse: _WIDTHS,
 }
