@@ -22,9 +22,29 @@ def test_no_module_is_long():
     assert [name for name, path in FILES.items() if structure.lines(path) > structure.LONGEST] == []
 
 
-def test_few_levels():
-    """Of all imports that a reader follows: at heads of modules, in functions and for type checkers."""
-    assert max(structure.levels(structure.imports(FILES)).values()) <= 29
+@pytest.mark.parametrize(
+    ("count", "most"),
+    [
+        (lambda: sum(map(structure.lines, FILES.values())), 39_200),
+        (lambda: sum(map(structure.code, FILES.values())), 24_400),
+        (lambda: len(FILES), 215),
+        (lambda: max(structure.levels(structure.imports(FILES)).values()), 22),
+        (lambda: structure.for_checkers(FILES), 40),
+        (lambda: len(structure.passed(FILES)), 34),
+        (lambda: sum(returns for _, returns in structure.passed(FILES).values()), 35),
+        (lambda: len(structure.lists_of_quantities(FILES)), 16),
+        (lambda: len(structure.tests_of_laws(FILES)), 0),
+        (lambda: sum(len(structure.public(path)) for path in FILES.values()), 860),
+        (lambda: structure.longest(FILES)[0], 100),
+        (lambda: sum(map(structure.lines, structure.modules("tests").values())), 24_000),
+        (lambda: sum(map(structure.lines, structure.modules("benchmarks").values())), 11_400),
+        (lambda: structure.words()[1], 45_000),
+    ],
+    ids="lines code modules levels typed scene returns lists laws public longest tests benchmarks words".split(),
+)
+def test_size(count, most):
+    """What a reader has to follow does not grow: a new feature makes something needless."""
+    assert count() <= most
 
 
 @pytest.mark.parametrize(
