@@ -42,6 +42,7 @@ from benchmarks.loads.shear import fitted, points
 from benchmarks.loads.states import by_scene, pressed, short, solved
 from fingerpad.reduced import default_finger
 from fingerpad.reduced.cylinder_errors import REGIONS, WHOLE, find
+from fingerpad.reduced.cylinders import SHEAR
 from fingerpad.results.files import replace
 from fingerpad.scene import Scene
 
@@ -127,7 +128,7 @@ def draw(docs: Path) -> Path:
         "regions": (rows := [*judged_levels(levels(compared, whole))]),
         "known_all": [each.error for each in rows if each.error is not None],
         "near": [each.error for each in rows if each.error is not None and each.pull == PULLED[0]],
-        "known_friction": Scene().friction, "kappa": fitted(both_have),
+        "known_friction": Scene().friction, "kappa": fitted(both_have), "SHEAR": SHEAR,
         "fresh": {key: fresh.beside(drawn["scenes"], key, mesh) for key in ("mu_app", "contact_length")},
         "known": [REGIONS[0].errors[key]["f_electrostatic"] for key in ("full_slip", WHOLE)],
         "lost": [each for each in states if "failure" in each],

@@ -158,7 +158,7 @@ def read(file: str | Path, header: str) -> Table:
     try:
         text = files.text(files.read(file, MOST))
     except OSError as error:
-        raise ValueError(f"cannot be read: {error.strerror or error}") from None
+        raise ValueError(f"cannot be read: {show(error.strerror or str(error))}") from None  # quoted: no key
     if text is None:
         raise ValueError("is no text")
     lines = text.rstrip().splitlines()
