@@ -18,8 +18,8 @@ from fingerpad.model.simulation import Simulation
 from variational.coefficients import between
 from variational.contact.friction import Friction
 from variational.roughness.closure import Closure
-from variational.solvers.accepted import Place
 from variational.solvers.continuation import StepFailed
+from variational.solvers.coupling import Place
 from variational.solvers.target import Target
 from variational.state import ContactState
 

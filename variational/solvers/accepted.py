@@ -1,4 +1,4 @@
-r"""The accepted state of a coupled problem, and how a state becomes one: put back to the onset of slip, or balanced.
+r"""How a state becomes one that is accepted: put back to the onset of slip, or balanced.
 
 **Onset of full slip.** The screen is uniform. Once every point in contact slips, the body moves on as a rigid one. So
 the state at the end of a step was reached before that end, in the place where the last point began to slip. With the
@@ -14,86 +14,15 @@ work of friction up to it, therefore do not depend on how far the last step went
 part (Allgower and Georg 1990, doi 10.1007/978-3-642-61257-2).
 """
 
-from dataclasses import dataclass, replace
-
 import numpy as np
 from mpi4py import MPI
-from numpy.typing import NDArray
 
-from variational.contact.formulation import SurfaceState
-from variational.history import Values
 from variational.resultants import Observer
-from variational.solvers.coupling import Coupling
 from variational.solvers.newton import Solver
 from variational.solvers.outcome import NotConverged
-from variational.solvers.target import Control
 
-Array = NDArray[np.float64]
 _LEFT = 1e-9  # part of the way back that is left, so that the last point stays at the limit of friction
 _SMALLEST_PART = 1 / 8  # of the forces that balance a state, taken away at a time
-
-
-@dataclass(frozen=True)
-class AcceptedState:
-    """Unknowns, history and loads, to which a rejected attempt returns."""
-
-    x: Array
-    """This rank's unknowns."""
-    bone: Array
-    """The bone's translation (m), shape (2,)."""
-    history: Values
-    """Accepted values of the history's fields."""
-    d_eq: Array
-    """Equivalent air gaps (m), shape (ridges,)."""
-    control: Control
-    voltage: float
-    reaction: Array
-    """On the bone (N/m), shape (2,)."""
-
-    @property
-    def height(self) -> float:
-        """The bone's height (m, change from unloaded)."""
-        return float(self.bone[1]) if self.control.y is None else self.control.y
-
-    @classmethod
-    def of(cls, coupling: Coupling) -> "AcceptedState":
-        """Return the present state; collective."""
-        solver, problem = coupling.solver, coupling.solver.problem
-        return cls(
-            solver.x.array_r.copy(),
-            solver.bone,
-            problem.history.accepted,
-            coupling.d_eq.copy(),
-            replace(solver.control),
-            float(problem.voltage.value),
-            solver.reaction.copy(),
-        )
-
-    def restore(self, coupling: Coupling) -> None:
-        """Return to the state; collective."""
-        solver, problem = coupling.solver, coupling.solver.problem
-        solver.x.array_w[:] = self.x
-        solver.equations.to_fields(solver.x)
-        coupling.set_air_gaps(self.d_eq.copy())
-        problem.history.accept(self.history)
-        problem.elapse(0.0)
-        solver.control = replace(self.control)
-        problem.voltage.value = self.voltage
-        solver.reaction = self.reaction.copy()
-
-
-@dataclass(frozen=True)
-class Place:
-    """An accepted state of a continuation, on its own mesh."""
-
-    accepted: AcceptedState
-    surface: SurfaceState
-    slip: tuple[float, bool]
-    """See :class:`variational.solvers.continuation.Continuation`."""
-    gain: Array
-    """See :class:`variational.solvers.coupling.Coupling`, shape (ridges,)."""
-    time: float
-    """(s)"""
 
 
 def return_to_onset(solver: Solver, observer: Observer, way: float) -> float:

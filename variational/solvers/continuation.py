@@ -16,8 +16,8 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
-from variational.solvers.accepted import AcceptedState, Place, relax, return_to_onset
-from variational.solvers.coupling import Coupling
+from variational.solvers.accepted import relax, return_to_onset
+from variational.solvers.coupling import AcceptedState, Coupling, Place
 from variational.solvers.outcome import NotConverged
 from variational.solvers.target import Control, Progress, Target, Way
 

@@ -31,12 +31,14 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 
 from variational.contact.formulation import SurfaceState
+from variational.history import Values
 from variational.resultants import Observer
 from variational.roughness.closure import Closure, air_gaps, check
 from variational.solvers.iteration import EXACT, StopRule
 from variational.solvers.newton import Solver
 from variational.solvers.outcome import NotConverged
 from variational.solvers.secant import Secants
+from variational.solvers.target import Control
 
 Array = NDArray[np.float64]
 # Solves at air gaps that change again are not exact. They leave a part of what the load brought out of balance, at most
@@ -193,3 +195,66 @@ class Coupling:
         ridge, error = self.history.ridges[-1], self.history.errors[-1]
         where = f"a contact error of {error:.2g} m" if scales else f"ridge {ridge}"
         raise NotConverged(f"COUPLING_CAP at {where}", False, cycling=not scales)
+
+
+@dataclass(frozen=True)
+class AcceptedState:
+    """Unknowns, history and loads, to which a rejected attempt returns."""
+
+    x: Array
+    """This rank's unknowns."""
+    bone: Array
+    """The bone's translation (m), shape (2,)."""
+    history: Values
+    """Accepted values of the history's fields."""
+    d_eq: Array
+    """Equivalent air gaps (m), shape (ridges,)."""
+    control: Control
+    voltage: float
+    reaction: Array
+    """On the bone (N/m), shape (2,)."""
+
+    @property
+    def height(self) -> float:
+        """The bone's height (m, change from unloaded)."""
+        return float(self.bone[1]) if self.control.y is None else self.control.y
+
+    @classmethod
+    def of(cls, coupling: Coupling) -> "AcceptedState":
+        """Return the present state; collective."""
+        solver, problem = coupling.solver, coupling.solver.problem
+        return cls(
+            solver.x.array_r.copy(),
+            solver.bone,
+            problem.history.accepted,
+            coupling.d_eq.copy(),
+            replace(solver.control),
+            float(problem.voltage.value),
+            solver.reaction.copy(),
+        )
+
+    def restore(self, coupling: Coupling) -> None:
+        """Return to the state; collective."""
+        solver, problem = coupling.solver, coupling.solver.problem
+        solver.x.array_w[:] = self.x
+        solver.equations.to_fields(solver.x)
+        coupling.set_air_gaps(self.d_eq.copy())
+        problem.history.accept(self.history)
+        problem.elapse(0.0)
+        solver.control = replace(self.control)
+        problem.voltage.value = self.voltage
+        solver.reaction = self.reaction.copy()
+
+
+@dataclass(frozen=True)
+class Place:
+    """An accepted state of a continuation, on its own mesh."""
+
+    accepted: AcceptedState
+    surface: SurfaceState
+    slip: tuple[float, bool]
+    """See :class:`variational.solvers.continuation.Continuation`."""
+    gain: Array
+    """See :class:`Coupling`, shape (ridges,)."""
+    time: float
+    """(s)"""
