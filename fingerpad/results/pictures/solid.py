@@ -134,7 +134,8 @@ def footprint(
         spacing: of ridges (m) where no state has them.
     """
     with style.look():
-        figure = style.figure(4.9, f"Whole finger under {whole.f_ext:.3g} N, as a sum of slices")
+        figure = style.figure(5.1, f"Whole finger under {whole.f_ext:.3g} N, as a sum of slices")
+        figure.set_layout_engine("constrained", rect=(0.0, 0.0, 1.0, 0.95))  # below the title
         axes = list(figure.subplots(1, len(whole.states) + 1, squeeze=False)[0])
         widest = max(float(each.columns["gross_width"].max(initial=0)) for each in whole.states.values())
         longest = max(float(np.abs(each.z).max(initial=0)) for each in whole.states.values())

@@ -134,7 +134,7 @@ def _write_png(drawn: Figure, data: BytesIO) -> None:
     canvas = FigureCanvasAgg(drawn)
     canvas.draw()
     image = Image.fromarray(np.asarray(canvas.buffer_rgba())[:, :, :3].copy())
-    image.quantize(_COLOURS, dither=Image.Dither.NONE).save(data, "PNG", dpi=(DPI, DPI))
+    image.quantize(_COLOURS, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(data, "PNG", dpi=(DPI, DPI))
 
 
 def plain(words: str) -> str:
