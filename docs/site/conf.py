@@ -51,6 +51,7 @@ napoleon_use_rtype = False
 # Types of other libraries and of variables in signatures have no page here.
 nitpick_ignore_regex = [
     ("py:.*", r"(?!(geometry|variational|fingerpad)\.).*"),
+    ("py:.*", r"variational\.state\._WithOwn"),  # a base without a page
     ("py:.*", r"fingerpad\.(runs\.processes\.(Key|Result)|scene\.(loads\.load_name|Scene\.replace|load))"),
 ]
 
