@@ -179,7 +179,7 @@ def test_nothing_but_the_voltage_holds_the_skin(offset, allowed):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        (None, "which cannot be read: No such file or directory"),
+        (None, "which cannot be read: 'No such file or directory'"),
         (TABLE + "0,1\n1,inf\n", "which has 'inf' in line 3 of 'voltage (V)'; it must be a finite number"),
         (TABLE + "0,1\n1,6000\n", "which at 1 s has a number that is 6000 V; it must be 0 or from 0.001 to 5000 V"),
         (
