@@ -161,7 +161,7 @@ def test_half_the_finger_has_the_whole_s_numbers_and_errors(fingers):
         assert half[name] == pytest.approx(whole[name], rel=1e-5), name
     error = "charged_contact_length_error"
     assert whole[error] / 5 < half[error] < 5 * whole[error]
-    assert set(half["accuracy"]["quantities"]) >= {"charged_contact_length", "charged_sed_0", "charged_sed_1"}
+    assert "charged_contact_length" in half["accuracy"]["quantities"]
     assert half["unknowns"] < 0.55 * whole["unknowns"]
     assert half["charged_f_t"] == 0.0
 
