@@ -61,6 +61,12 @@ def rows_of(folder: Path, name: str = "steps") -> list[dict[str, str]]:
         return list(csv.DictReader(file))
 
 
+def tables(folder: Path) -> dict[str, list[dict[str, str]]]:
+    """Return all tables of a run as text, without the time that steps took."""
+    rows = {name: rows_of(folder, name) for name in ("steps", "ridges", "coupling")}
+    return {name: [{k: v for k, v in row.items() if "seconds" not in k} for row in of] for name, of in rows.items()}
+
+
 def _rows(state: ContactState, name: str) -> Iterator[dict[str, Any]]:
     if name == "coupling":
         yield from ({"iteration": k, "change": change} for k, change in enumerate(state.changes, start=1))

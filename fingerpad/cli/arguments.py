@@ -93,20 +93,19 @@ class Parser(argparse.ArgumentParser):
             words = f"print the {quiet} alone: no line of a step or a run, no progress bar"
             self.add_argument("--quiet", action="store_true", help=words)
 
-    def add_file(self, option: str, kind: Kind, what: str, default: str | None = None, dest: str | None = None) -> None:
+    def add_file(self, option: str, kind: Kind, what: str, dest: str | None = None) -> None:
         """Add a file that the command writes, which is refused where it may not be replaced.
 
         Args:
             option: as ``--csv``.
             kind: of the file.
             what: for the help.
-            default: name of the file; by default none is written.
             dest: name of the value; by default that of the option.
         """
-        name, chosen = dest or option.lstrip("-"), None if default is None else Path(default)
+        name = dest or option.lstrip("-")
         self._written[name] = kind
         metavar = kind.endings[0][1:].upper()
-        self.add_argument(option, dest=name, type=path, metavar=metavar, default=chosen, help=what)
+        self.add_argument(option, dest=name, type=path, metavar=metavar, help=what)
 
     def read(self, argv: Sequence[str], petsc: bool = False) -> argparse.Namespace:
         """Return options; those for PETSc are the list ``petsc``, where they are allowed.
@@ -295,7 +294,7 @@ def _same(one: Path, other: Path) -> bool:
     return one.absolute() == other.absolute() or (one.exists() and other.exists() and one.samefile(other))
 
 
-def echo(text: str = "", end: str = "\n") -> None:
+def echo(text: str = "") -> None:
     """Print on rank 0."""
     if launcher.rank() == 0:
-        print(text, end=end, file=sys.stdout)
+        print(text, file=sys.stdout)

@@ -19,7 +19,8 @@ from fingerpad.scene.materials import CLOSURES, Topography
 from fingerpad.scene.messages import SceneError, clip, first_error
 from fingerpad.scene.remarks import on_waves
 from variational.attraction.electroadhesion import VACUUM_PERMITTIVITY
-from variational.roughness.bam import STICKING, BearingArea
+from variational.roughness.bam import BearingArea
+from variational.roughness.closure import STICKING
 from variational.roughness.heightfile import Found, scan
 from variational.roughness.spectrum import HURST, Fit, power_spectrum, roughness_table
 from variational.roughness.tabulated import TabulatedClosure

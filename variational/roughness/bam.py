@@ -18,7 +18,7 @@ import scipy  # its parts are imported where they are used first: to read a scen
 from numpy.typing import ArrayLike, NDArray
 
 from variational.coefficients import OF_SCENE, Named, parameter, refuse_not_positive
-from variational.roughness.closure import PAST_THE_FOLD, AirGap, Closure, Progress
+from variational.roughness.closure import PAST_THE_FOLD, STICKING, AirGap, Closure, Progress
 from variational.roughness.gaps import Slopes, Statistics, breaking_gaps
 
 if TYPE_CHECKING:
@@ -28,10 +28,6 @@ Array = NDArray[np.float64]
 _EPS_0 = 8.854e-12  # F/m, Table 3
 _SEPARATION = 1e-15  # error of a separation that is a root, over h_rms
 _REACH = 1.5  # of the attraction over the repulsion's decay length, up to which a voltage of sticking is computed
-STICKING = 1e3
-"""Pull-off stress (Pa) from which a ridge is called sticking: a tenth of the least ridge pressure of interest, 10 kPa.
-*Assumption*: a convention. On the 36 mm² that the default finger has in contact it holds 4 g. Without such a value the
-voltage would be that of a stress of zero, which tails of the repulsion reach at any voltage."""
 
 
 @dataclass(frozen=True)
@@ -210,13 +206,13 @@ class BearingArea(Named, Closure):
             return 1.8 * self.h_rms * float(np.sqrt(self.h_0 * 4 / 3 * self.young / (_EPS_0 * self.wavelength)))
         return self._pulled_off(0.0)
 
-    def sticking_voltage(self, stress: float = STICKING) -> float | None:
-        """Return the voltage (V) at which the pull-off stress, minus the least p_ext, reaches ``stress`` (Pa).
+    def sticking_voltage(self) -> float | None:
+        """Return the voltage (V) at which the pull-off stress, minus the least p_ext, reaches :data:`.STICKING`.
 
         None where the reach of the attraction, h_0, is above 1.5 decay lengths gamma h_rms of the repulsion. Beyond 1.6
         of them a thicker insulator would need less voltage, by attraction of surfaces that hardly touch.
         """
-        return self._pulled_off(stress) if self.h_0 <= _REACH * self.gamma * self.h_rms else None
+        return self._pulled_off(STICKING) if self.h_0 <= _REACH * self.gamma * self.h_rms else None
 
     def _pulled_off(self, stress: float) -> float:
         """Return the voltage (V) at which the least p_ext is minus ``stress`` (Pa)."""

@@ -27,6 +27,10 @@ PAST_THE_FOLD = "past the fold"
 """State of a ridge whose attraction grows faster than its contact pressure: alone, it comes down or lets go at once."""
 BALANCED = 0.1
 """Part of the pressure in contact from which its attraction is overestimated by some 8 %."""
+STICKING = 1e3
+"""Pull-off stress (Pa) from which a ridge is called sticking: a tenth of the least ridge pressure of interest, 10 kPa.
+*Assumption*: a convention. Without such a value the voltage would be that of a stress of zero, which tails of the
+repulsion reach at any voltage."""
 _SHARE = 0.1  # of the contact force, from which ridges outside of a closure's range are mentioned
 _PRESSURES = np.array([0.0, 1.0, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7])  # Pa, at which a closure is examined
 

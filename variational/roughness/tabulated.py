@@ -18,7 +18,7 @@ import scipy  # its parts are imported where they are used first: to read a scen
 from numpy.typing import ArrayLike, NDArray
 
 from variational.coefficients import OF_SCENE, Named, parameter, refuse_not_positive
-from variational.roughness.closure import PAST_THE_FOLD, AirGap, Closure, Progress
+from variational.roughness.closure import PAST_THE_FOLD, STICKING, AirGap, Closure, Progress
 from variational.roughness.gaps import GapTable, Slopes, Statistics, breaking_gaps
 
 if TYPE_CHECKING:
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 _EPS_0 = 8.854e-12  # F/m, Table 3
-_STICKING = 1e3
 _SIDE = 4.0  # largest waves in the side of the surface whose scatter is meant
 
 
@@ -240,15 +239,15 @@ class TabulatedClosure(Named, Closure):
         grows = -_EPS_0 * voltage**2 / (self.h_0 + float(d_eq)) ** 3 * float(slope)
         return PAST_THE_FOLD if grows > 1 else ""
 
-    def sticking_voltage(self, stress: float = _STICKING) -> float:
-        """Return the voltage (V) from which a flat ridge adheres without a load, by a pull-off stress ``stress`` (Pa).
+    def sticking_voltage(self) -> float:
+        """Return the voltage (V) from which a flat ridge adheres without a load, by a stress :data:`.STICKING`.
 
         The attraction exceeds the contact pressure by that stress at one pressure of the table at least.
         """
 
         def squared(x: float) -> float:
             p_c = np.exp(x)
-            return float(2 * (p_c + stress) * (self.h_0 + self(p_c).d_eq) ** 2 / _EPS_0)
+            return float(2 * (p_c + STICKING) * (self.h_0 + self(p_c).d_eq) ** 2 / _EPS_0)
 
         low, high = (float(np.log(p)) for p in self.pressures)
         grid = np.linspace(low, high, 200)
