@@ -22,7 +22,7 @@ from variational.materials.ogden import Ogden
 from variational.roughness.bam import BearingArea
 from variational.roughness.closure import AirGap, Closure
 from variational.solvers.continuation import Target
-from variational.solvers.coupling import Coupling
+from variational.solvers.coupling import AcceptedState, Coupling
 from variational.solvers.iteration import EXACT
 from variational.solvers.outcome import NotConverged, Timings
 
@@ -195,3 +195,22 @@ def test_mean_pressure_is_over_the_length_chosen(by_gap):
     sides = [np.interp(level, y[x * side > 0][::side], np.abs(x[x * side > 0])[::side]) for side in (1, -1)]
     force = made.observer.ridge_loads(surface).f_contact[0]
     assert d_eq == pytest.approx(float(closure(force / sum(sides)).d_eq), rel=0.01)
+
+
+def test_state_is_restored_with_its_air_gaps():
+    """A rejected attempt leaves nothing: air gaps, loads, history and unknowns are those before, to the last bit."""
+    body, law = load(MPI.COMM_SELF, ridge(30e-6)), Interface(Penalty(1.5e12, 5e10), 0.25, H_0)
+    made = Body(body, {tags.STRATUM_CORNEUM: Ogden(86.76e3, -14.53, 0.48)}, law, BearingArea(H_0))
+    made.continuation.run(Target("press", f_ext=4.4))
+    before = AcceptedState.of(made.coupling)
+    made.continuation.run(Target("charge", voltage=150.0))
+    made.continuation.run(Target("slide", bone_x=50e-6))
+    assert not np.array_equal(made.coupling.d_eq, before.d_eq) and not np.array_equal(made.solver.x.array_r, before.x)
+    before.restore(made.coupling)
+    after = AcceptedState.of(made.coupling)
+    for name in ("x", "bone", "d_eq", "reaction"):
+        np.testing.assert_array_equal(getattr(after, name), getattr(before, name), err_msg=name)
+    for name, values in before.history.items():
+        np.testing.assert_array_equal(after.history[name], values, err_msg=name)
+    assert (after.control, after.voltage) == (before.control, before.voltage) and after.voltage == 0.0
+    assert set(made.problem.d_eq.x.array[made.problem.surface.pairs[:, 0]]) == set(before.d_eq)
