@@ -21,7 +21,7 @@
 # make feel   what people and nerves were measured to do beside spikes; docs/measured.md, ten minutes
 # make performance  counts, ratios and seconds, part by part, on an idle machine; docs/performance.md, half an hour
 # make calibration  estimated errors beside known ones, scene by scene; docs/errors.md, ten minutes
-# make chart  error over work, one numerical setting after the other; docs/errors.md and chart.md, half an hour or more
+# make chart  error over work, one numerical setting after the other; docs/errors.md, half an hour or more
 #
 # With SUITE=sid in Debian unstable, that is with a newer dolfinx: make test SUITE=sid
 # All but test-pip and test-contact need nothing but Debian 12, root, apt and PyPI: environment/run finds or makes what they run in.
