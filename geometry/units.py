@@ -225,6 +225,11 @@ class Range:
     zero: bool = False
     sides: int = 1
 
+    @property
+    def annotation(self) -> Any:
+        """The annotation of a number within the range."""
+        return Annotated[Finite, WrapValidator(self)]
+
     def __contains__(self, value: float) -> bool:
         """Return whether a value is allowed."""
         amount = abs(value) if self.sides == 2 else value
@@ -277,3 +282,8 @@ class Range:
 def within(low: float, high: float, unit: str = "", zero: bool = False, sides: int = 1) -> WrapValidator:
     """Return the annotation of a number that must be in a :class:`Range`."""
     return WrapValidator(Range(low, high, unit, zero, sides))
+
+
+def limits_of(annotation: Any) -> Range:
+    """Return the range of an annotated number."""
+    return next(part.func for part in annotation.__metadata__ if isinstance(getattr(part, "func", None), Range))

@@ -266,7 +266,7 @@ def _unready(scene: Scene) -> str:
     try:
         horny = scene.materials.stratum_corneum
         ridge = Cylinder(tip_radius(scene.geometry), 2 * horny.shear_modulus / (1 - horny.poisson), scene.h_0, closure)
-        voltages = (load.wave.peak if load.wave else load.level or 0.0 for load in scene.loads())
+        voltages = (load.drive.peak if load.drive else load.level or 0.0 for load in scene.loads())
         ridge.under_loads([max(load.f_ext or 1.0 for load in scene.loads()) / 9], max(voltages))[0]
     except (NoEquilibriumError, SceneError) as error:
         return "" if len(str(error)) < LONGEST else str(error)

@@ -100,8 +100,8 @@ def test_sign_of_the_voltage_changes_nothing():
             [{"name": "a", "voltage": 50.0}, {"name": "b", "voltage": -90.0}],
         ),
         (
-            [{"name": "table", "voltage": {"waveform": "file", "times": [0, 1, 2], "voltages": [0, 90, 30]}}],
-            [{"name": "table", "voltage": {"waveform": "file", "times": [0, 1, 2], "voltages": [0, -90, -30]}}],
+            [{"name": "table", "voltage": {"waveform": "file", "times": [0, 1, 2], "values": [0, 90, 30]}}],
+            [{"name": "table", "voltage": {"waveform": "file", "times": [0, 1, 2], "values": [0, -90, -30]}}],
         ),
     ):
         plus, minus = follow(PRESS, *up, SLIDE), follow(PRESS, *down, SLIDE)
@@ -119,7 +119,7 @@ def test_relative_moves_are_moves():
 
 
 @pytest.mark.parametrize(
-    "wave", [WAVE, {"waveform": "file", "times": [0, 1 / 60], "voltages": [0, 100]}], ids=["sine", "file"]
+    "wave", [WAVE, {"waveform": "file", "times": [0, 1 / 60], "values": [0, 100]}], ids=["sine", "file"]
 )
 def test_every_state_is_at_the_voltage_of_its_time(wave):
     """Also where the bone moves so far between two samples that steps are cut. Tolerance: roundoff of the square."""

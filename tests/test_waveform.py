@@ -56,12 +56,12 @@ def test_square_jumps_both_ways():
 
 def test_flat_parts_of_a_file_have_samples_behind_a_jump():
     """As many as half a square's period, also where the load begins; where nothing jumped a piece is one step."""
-    burst = {"waveform": "file", "times": (0, 0.01, 0.010001, 0.02, 0.03), "voltages": (0, 0, 100, 100, 100)}
+    burst = {"waveform": "file", "times": (0, 0.01, 0.010001, 0.02, 0.03), "values": (0, 0, 100, 100, 100)}
     times = [time for time, _ in wave(0.03, **burst).samples(0.03, 1.0)]
     counts = [sum(a < time <= b for time in times) for a, b in ((0, 0.01), (0.010001, 0.02), (0.02, 0.03))]
     assert counts == [SAMPLES // 2, SAMPLES // 2, 1]
     dense = [k / SAMPLES for k in range(SAMPLES + 1)]  # of a sine: no jump in it
-    sine = {"waveform": "file", "times": dense, "voltages": [100 * math.sin(2 * math.pi * t) for t in dense]}
+    sine = {"waveform": "file", "times": dense, "values": [100 * math.sin(2 * math.pi * t) for t in dense]}
     assert len(wave(**sine).samples(1.0, 1.0)) <= SAMPLES + 1 + SAMPLES // 2
 
 
@@ -74,7 +74,7 @@ def test_file_is_straight_between_its_points(write, tmp_path):
     )
     scene = load(path)
     found = scene.history[1].wave
-    assert (found.times, found.voltages) == ((0, 0.01, 0.02, 0.04), (0, 100, -100, -100))
+    assert (found.times, found.values) == ((0, 0.01, 0.02, 0.04), (0, 100, -100, -100))
     assert from_data(scene.parameters()) == scene and "mine" not in str(scene.parameters())
     samples = found.samples(0.04, 1.0)
     assert {(0.0, 0.0), (0.01, 100.0), (0.015, 0.0), (0.02, -100.0), (0.04, -100.0)} <= set(samples)
@@ -126,7 +126,7 @@ def refusal(*loads: dict) -> str:
             "history[1].voltage.frequency is missing; history[1].voltage.waveform is 'sine' and needs it",
         ),
         (
-            {"voltage": {"waveform": "file", "times": [0, 1], "voltages": [0, 9]}, "duration": 2.0},
+            {"voltage": {"waveform": "file", "times": [0, 1], "values": [0, 9]}, "duration": 2.0},
             "history[1].voltage has values up to 1 s and the load takes 2 s",
         ),
     ],
@@ -142,7 +142,7 @@ def test_contradictions_are_refused(load_, message):
 def test_steps_of_a_table_are_counted(points, allowed):
     """From 100 to -100 V and back at each point takes eight steps: four to zero, and four on; the first piece 12."""
     times, voltages = [1e-3 * k for k in range(points)], [100.0 * (-1) ** k for k in range(points)]
-    table = {"waveform": "file", "times": times, "voltages": voltages}
+    table = {"waveform": "file", "times": times, "values": voltages}
     load_ = {"name": "wave", "duration": times[-1], "voltage": table}
     if allowed:
         wave = from_data({"history": [PRESS, load_]}).history[1].wave

@@ -19,6 +19,7 @@ from pydantic import BaseModel, WrapValidator
 from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 from pydantic_core import core_schema
 
+from fingerpad.scene.controls import LoadKey
 from fingerpad.scene.law_keys import LawKey, keys_of, range_of
 from geometry.units import QUANTITIES, Range
 
@@ -83,7 +84,8 @@ def by_name(scene: type[BaseModel]) -> dict[str, Key]:
 def _of(model: type[BaseModel], table: str, instance: BaseModel | None) -> Iterator[Key]:
     inner, laws = [], list[tuple[str, LawKey, str]]()
     for name, field in model.model_fields.items():
-        parts = tuple(_parts(field.annotation)) + tuple(field.metadata)
+        own = next((part.annotation for part in field.metadata if isinstance(part, LoadKey)), field.annotation)
+        parts = tuple(_parts(own)) + tuple(field.metadata)
         law = next((part for part in parts if isinstance(part, LawKey)), None)
         if law is not None:
             meaning = plain_text(field.description)
