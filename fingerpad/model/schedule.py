@@ -3,6 +3,7 @@
 from dataclasses import replace
 from functools import partial
 from itertools import pairwise
+from typing import Any
 
 from fingerpad.scene import Load
 from fingerpad.scene.controls import ends_of
@@ -24,7 +25,7 @@ def targets(load: Load, x: float, step_scale: float) -> list[Target]:
     place = load.place(x)
     seconds = load.seconds(0.0 if place is None else place - x)
     now = {"bone_x": x}
-    aims = {
+    aims: dict[str, Any] = {
         control.target or name: getattr(load, name) + (now[control.target] if control.moves else 0.0)
         for name, control in load.controls().items()
         if load.over_time is None or name != load.over_time[0]
@@ -33,7 +34,8 @@ def targets(load: Load, x: float, step_scale: float) -> list[Target]:
         return [Target(load.name, until_full_slip=load.until_full_slip, duration=seconds, **aims)]
     name, wave = load.over_time
     samples = wave.samples(seconds, step_scale)
-    found, jumped = [Target(load.name, **{name: samples[0][1]})], 0.0
+    first: dict[str, Any] = {name: samples[0][1]}
+    found, jumped = [Target(load.name, **first)], 0.0
     for sample, after in pairwise(samples):
         (before, _), (time, value) = sample, after
         part = time / seconds if time < seconds else 1.0

@@ -28,9 +28,10 @@ def _in_unit(name: str, limits: Range, base: type[_Wave]) -> type[_Wave]:
         limits: values that the control can have.
         base: waveforms of any unit.
     """
-    low, high, unit, number = limits.low, limits.high, limits.unit, limits.annotation
+    low, high, unit = limits.low, limits.high, limits.unit
+    number: Any = limits.annotation
     size, double = (Annotated[Finite, within(low, most, unit)] | None for most in (high, 2 * high))
-    values = Annotated[tuple[number, ...], LISTED] | None
+    values: Any = Annotated[tuple[number, ...], LISTED] | None
     types = {"amplitude": size, "peak_to_peak": double, "rms": size, "offset": number, "values": values}
     known = base.model_fields
     fields: Any = {k: (of, Field(known[k].default, description=known[k].description)) for k, of in types.items()}
@@ -86,8 +87,8 @@ class Control(LoadKey):
         """A number, or one of its waveforms."""
         if self.wave is None:
             return self.limits.annotation
-        of = Annotated[self.limits.annotation, Tag(NUMBER)] | Annotated[self.wave, Tag(WAVE)]
-        return Annotated[of, Discriminator(_kind)]
+        number, wave = (Annotated[of, Tag(tag)] for of, tag in ((self.limits.annotation, NUMBER), (self.wave, WAVE)))
+        return Annotated[number | wave, Discriminator(_kind)]
 
 
 def _kind(value: Any) -> str:
