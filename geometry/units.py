@@ -282,8 +282,3 @@ class Range:
 def within(low: float, high: float, unit: str = "", zero: bool = False, sides: int = 1) -> WrapValidator:
     """Return the annotation of a number that must be in a :class:`Range`."""
     return WrapValidator(Range(low, high, unit, zero, sides))
-
-
-def limits_of(annotation: Any) -> Range:
-    """Return the range of an annotated number."""
-    return next(part.func for part in annotation.__metadata__ if isinstance(getattr(part, "func", None), Range))

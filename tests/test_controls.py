@@ -8,14 +8,13 @@ from numpy.testing import assert_allclose
 
 import fingerpad as fp
 from fingerpad.scene import SceneError, from_data
-from fingerpad.scene.controls import Control
 from fingerpad.scene.keys import by_name
 from fingerpad.scene.loads import Load, keys_of_load
 from fingerpad.scene.scene import Scene
 from tests.test_loads_over_time import MU_0, PRESS, SCALE, SLIDE, follow, result
 from variational.state import ContactState
 
-WAVES = {name: key for name, key in keys_of_load().items() if isinstance(key, Control) and key.wave is not None}
+WAVES = {name: key for name, key in keys_of_load().items() if key.wave is not None}
 SINE = {"waveform": "sine", "frequency": 2.0}
 FORCE = SINE | {"offset": 1.0, "amplitude": 0.6}
 HEIGHT = SINE | {"waveform": "triangle", "offset": -20e-6, "amplitude": 30e-6}

@@ -22,7 +22,7 @@ from fingerpad.model import drive_loads
 from fingerpad.results.data import ResultData
 from fingerpad.results.states import long_steps
 from fingerpad.scene import Scene, remarks
-from fingerpad.scene.carrier import CarriedWaveform
+from fingerpad.scene.controls import CarriedWaveform
 from fingerpad.scene.drive import Drive, drive_of
 from variational.caution import Caution
 from variational.contact.formulation import Formulation

@@ -15,8 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fingerpad.scene import Load, Scene
-from fingerpad.scene.carrier import CarriedWaveform
-from fingerpad.scene.controls import VoltageWaveform
+from fingerpad.scene.controls import CarriedWaveform, VoltageWaveform
 from fingerpad.scene.drive import GAPS, REFERENCE, Drive, drive_of
 from fingerpad.scene.loads import ways
 from fingerpad.scene.messages import SceneError

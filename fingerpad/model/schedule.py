@@ -25,14 +25,14 @@ def targets(load: Load, x: float, step_scale: float) -> list[Target]:
     place = load.place(x)
     seconds = load.seconds(0.0 if place is None else place - x)
     now = {"bone_x": x}
+    name, wave = load.over_time or ("", None)
     aims: dict[str, Any] = {
-        control.target or name: getattr(load, name) + (now[control.target] if control.moves else 0.0)
-        for name, control in load.controls().items()
-        if load.over_time is None or name != load.over_time[0]
+        key.moves or each: getattr(load, each) + (now[key.moves] if key.moves else 0.0)
+        for each, key in load.controls().items()
+        if each != name
     }
-    if load.over_time is None:
+    if wave is None:
         return [Target(load.name, until_full_slip=load.until_full_slip, duration=seconds, **aims)]
-    name, wave = load.over_time
     samples = wave.samples(seconds, step_scale)
     first: dict[str, Any] = {name: samples[0][1]}
     found, jumped = [Target(load.name, **first)], 0.0

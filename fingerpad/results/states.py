@@ -17,7 +17,7 @@ from operator import attrgetter
 
 from fingerpad.results.over_time import OverTime, over_time, without_parts_of_jumps
 from fingerpad.results.quantities import EXTREMES
-from fingerpad.scene import Load
+from fingerpad.scene.loads import Load
 from fingerpad.scene.waveform import Waveform
 from variational.caution import Caution
 from variational.state import ContactState

@@ -1,33 +1,100 @@
-"""What a load controls, and how fast: one entry each, which a field of :class:`fingerpad.scene.loads.Load` takes.
+r"""What a load controls, and how fast: one entry each, which a field of :class:`fingerpad.scene.loads.Load` takes.
 
 A control is a number, a move or a waveform in its own unit. Its entry has its range, its words, the key in whose place
-it stands, and the field of a :class:`~variational.solvers.target.Target` that it sets. What is read of a load, refused,
-printed and reached follows from the entries.
+it stands, and what of a :class:`~variational.solvers.target.Target` it sets. What is read of a load, refused, printed
+and reached follows from the entries.
+
+A voltage can have a carrier. The wave is then the envelope of a sine of higher frequency, with the depth m of
+``modulation``, so that the amplitude is that of the peak:
+
+.. math:: U(t) = U_0 + \hat U \, \frac{1 + m \, w(f t)}{1 + m} \sin 2 \pi f_c t
 """
 
 from dataclasses import dataclass
+from itertools import pairwise
 from types import NoneType
 from typing import Annotated, Any, TypeVar, get_args
 
-from pydantic import Discriminator, Field, GetCoreSchemaHandler, Tag, create_model
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Discriminator, Field, GetCoreSchemaHandler, Tag, create_model, model_validator
 from pydantic_core import CoreSchema
 
-from fingerpad.scene.carrier import CarriedWaveform
-from fingerpad.scene.messages import NUMBER, WAVE
-from fingerpad.scene.waveform import IN_WORDS, LISTED, Waveform
-from geometry.units import Finite, Range, within
+from fingerpad.scene.messages import NUMBER, WAVE, show
+from fingerpad.scene.waveform import IN_WORDS, LISTED, Frequency, Waveform, shape
+from geometry.units import Finite, Range, Table, within
 
+Array = NDArray[np.float64]
 _Wave = TypeVar("_Wave", bound=Waveform)
+_MOST_CARRIED = 2000.0  # periods of a carrier in one of the wave and its burst
+
+
+# -- waveforms -----------------------------------------------------------------------------------------
+class Carrier(Table):
+    """A sine of higher frequency, of which the wave is the envelope."""
+
+    frequency: Frequency
+    """Frequency of the carrier (Hz), above that of the wave. It is taken at the nearest multiple of the frequency with
+    which the drive repeats itself."""
+    modulation: Annotated[Finite, within(1e-3, 1)] | None = None
+    """Depth m of the modulation, from none to 1, the default: an envelope that closes. Not for a file, whose voltages
+    have their carrier in them."""
+
+    @property
+    def depth(self) -> float:
+        """Depth m of the modulation."""
+        return self.modulation or 1.0
+
+
+class CarriedWaveform(Waveform):
+    """A voltage over time, in place of a number; see :mod:`fingerpad.scene.waveform`."""
+
+    carrier: Carrier | None = None
+    """A sine of higher frequency, of which the wave is the envelope; see :mod:`fingerpad.scene.controls`."""
+
+    @model_validator(mode="after")
+    def _consistent_carrier(self) -> "CarriedWaveform":
+        if self.carrier is None:
+            return self
+        frequency, modulation = self.carrier.frequency, self.carrier.modulation
+        step = max((after - before for before, after in pairwise(self.times or ())), default=0.0)
+        given = f"carrier.frequency is {show(frequency)} Hz"
+        if self.times is not None and modulation is not None:
+            raise ValueError(
+                f"carrier.modulation is {show(modulation)} and waveform is 'file', whose voltages have their carrier "
+                "in them; leave it out"
+            )
+        if step * frequency > 0.5:
+            raise ValueError(
+                f"{given} and the file has times {step:.4g} s apart; they must be at most {0.5 / frequency:.4g} s "
+                "apart, two in a period (Nyquist)"
+            )
+        if self.frequency is not None and frequency <= self.frequency:
+            raise ValueError(
+                f"{given} and frequency is {show(self.frequency)} Hz; the carrier must have the higher one"
+            )
+        if self.times is None and (periods := frequency * self.period) > _MOST_CARRIED:
+            raise ValueError(f"{given}, {periods:.4g} periods in one of the drive; there must be at most 2000")
+        return self
+
+    def _square_mean(self) -> float:
+        mean = super()._square_mean()
+        if self.carrier is None:
+            return mean
+        return (1 + self.carrier.depth**2 * mean) / (1 + self.carrier.depth) ** 2 / 2
+
+    def _carried(self, found: Array, part: Array, parts: float) -> Array:
+        if self.carrier is None:
+            return found
+        carried, depth = part * round(self.carrier.frequency * self.period), self.carrier.depth
+        return (1 + depth * found) / (1 + depth) * shape("sine", carried, parts)
+
+    def _carried_in_words(self) -> str:
+        return "" if self.carrier is None else f" on a carrier of {self.carrier.frequency:g} Hz"
 
 
 def _in_unit(name: str, limits: Range, base: type[_Wave]) -> type[_Wave]:
-    """Return the waveforms of a control: their sizes and values are in its unit and within its limits.
-
-    Args:
-        name: of the class, which this module must have under it: scenes are pickled.
-        limits: values that the control can have.
-        base: waveforms of any unit.
-    """
+    """Return the waveforms whose sizes and values are within limits; ``name`` is theirs in this module, for pickle."""
     low, high, unit = limits.low, limits.high, limits.unit
     number: Any = limits.annotation
     size, double = (Annotated[Finite, within(low, most, unit)] | None for most in (high, 2 * high))
@@ -40,26 +107,37 @@ def _in_unit(name: str, limits: Range, base: type[_Wave]) -> type[_Wave]:
     return found
 
 
+# -- keys ----------------------------------------------------------------------------------------------
 @dataclass(frozen=True, eq=False)
 class LoadKey:
-    """A key of a load that has a number."""
+    """A key of a load that has a number: what it controls, or how fast."""
 
     limits: Range
-    """Its values."""
     words: str
     """With ``{}`` for the number, in mm for m."""
     instead: str = ""
     """Key in whose place it stands: a load has one of the two."""
     remedy: str = ""
-    """What a load with both is answered."""
+    """What is to be done about both."""
+    wave: type[Waveform] | None = None
+    """Its waveforms; None where it has none."""
+    moves: str = ""
+    """Control that it moves from its present value; empty where its number is the value."""
+    held: bool = True
+    """Whether a slide to full slip may stop before it is reached."""
+    paces: bool = False
+    """Whether it sets how long the load takes, and controls nothing."""
 
     @property
     def annotation(self) -> Any:
         """What it can be, for pydantic and for the reference of keys."""
-        return self.limits.annotation
+        if self.wave is None:
+            return self.limits.annotation
+        number, wave = (Annotated[of, Tag(tag)] for of, tag in ((self.limits.annotation, NUMBER), (self.wave, WAVE)))
+        return Annotated[number | wave, Discriminator(lambda v: WAVE if isinstance(v, dict | Waveform) else NUMBER)]
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        """Return the schema of its values."""
+        """Return the schema of what it can be."""
         return handler.generate_schema(self.annotation | None if NoneType in get_args(source) else self.annotation)
 
     def in_words(self, value: float | Waveform) -> str:
@@ -69,32 +147,6 @@ class LoadKey:
         return self.words.format(value * IN_WORDS.get(self.limits.unit, (1.0, ""))[0])
 
 
-@dataclass(frozen=True, eq=False)
-class Control(LoadKey):
-    """A key by which a load changes what acts on the finger."""
-
-    wave: type[Waveform] | None = None
-    """Its waveforms; None where it has none."""
-    target: str = ""
-    """What it sets of a target where that is not of its own name."""
-    moves: bool = False
-    """Whether it is a move from the present value."""
-    held: bool = True
-    """Whether a slide to full slip may stop before it is reached."""
-
-    @property
-    def annotation(self) -> Any:
-        """A number, or one of its waveforms."""
-        if self.wave is None:
-            return self.limits.annotation
-        number, wave = (Annotated[of, Tag(tag)] for of, tag in ((self.limits.annotation, NUMBER), (self.wave, WAVE)))
-        return Annotated[number | wave, Discriminator(_kind)]
-
-
-def _kind(value: Any) -> str:
-    return WAVE if isinstance(value, dict | Waveform) else NUMBER
-
-
 _FORCE = Range(1e-3, 5e3, "N/m", zero=True)
 _LENGTH = Range(1e-9, 0.1, "m", zero=True, sides=2)
 _VOLTS = Range(1e-3, 5e3, "V", zero=True, sides=2)
@@ -102,19 +154,14 @@ ForceWaveform = _in_unit("ForceWaveform", _FORCE, Waveform)
 LengthWaveform = _in_unit("LengthWaveform", _LENGTH, Waveform)
 VoltageWaveform = _in_unit("VoltageWaveform", _VOLTS, CarriedWaveform)
 
-FORCE = Control(_FORCE, "force to {:g} N/m (per metre of finger)", wave=ForceWaveform)
-HEIGHT = Control(
-    _LENGTH, "bone's height to {:+g} mm of the unloaded one", "f_ext", "at most one of the two can be prescribed",
-    wave=LengthWaveform,
-)  # fmt: skip
-VOLTAGE = Control(_VOLTS, "voltage to {:g} V", wave=VoltageWaveform)
-PLACE = Control(_LENGTH, "bone sideways to {:g} mm", wave=LengthWaveform, held=False)
-MOVE = Control(
-    _LENGTH, "bone sideways by {:+g} mm", "bone_x", "give the place or the move", target="bone_x", moves=True,
-    held=False,
-)  # fmt: skip
-SPEED = LoadKey(Range(1e-6, 100.0, "m/s"), "at {:g} mm/s")
-DURATION = LoadKey(Range(1e-6, 1e5, "s"), "in {:g} s", "speed", "one follows from the other, so give one")
+FORCE = LoadKey(_FORCE, "force to {:g} N/m (per metre of finger)", wave=ForceWaveform)
+HEIGHT = LoadKey(_LENGTH, "bone's height to {:+g} mm of the unloaded one", "f_ext",
+                 "at most one of the two can be prescribed", wave=LengthWaveform)  # fmt: skip
+VOLTAGE = LoadKey(_VOLTS, "voltage to {:g} V", wave=VoltageWaveform)
+PLACE = LoadKey(_LENGTH, "bone sideways to {:g} mm", wave=LengthWaveform, held=False)
+MOVE = LoadKey(_LENGTH, "bone sideways by {:+g} mm", "bone_x", "give the place or the move", moves="bone_x", held=False)
+SPEED = LoadKey(Range(1e-6, 100.0, "m/s"), "at {:g} mm/s", paces=True)
+DURATION = LoadKey(Range(1e-6, 1e5, "s"), "in {:g} s", "speed", "one follows from the other, so give one", paces=True)
 
 
 def number_of(value: float | Waveform | None) -> float | None:

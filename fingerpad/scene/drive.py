@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from pydantic import BeforeValidator, Discriminator, Tag, model_validator
 
-from fingerpad.scene.carrier import CarriedWaveform
+from fingerpad.scene.controls import CarriedWaveform
 from fingerpad.scene.messages import NAME, NUMBER, TABLE, show
 from geometry.units import Finite, Table, within
 from variational.attraction.circuit import LEAKS, GapCircuit, Network, fit_leak

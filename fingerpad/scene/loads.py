@@ -13,19 +13,8 @@ from typing import Annotated, Any
 
 from pydantic import AfterValidator, model_validator
 
-from fingerpad.scene.carrier import CarriedWaveform
-from fingerpad.scene.controls import (
-    DURATION,
-    FORCE,
-    HEIGHT,
-    MOVE,
-    PLACE,
-    SPEED,
-    VOLTAGE,
-    Control,
-    LoadKey,
-    number_of,
-)
+from fingerpad.scene import controls
+from fingerpad.scene.controls import CarriedWaveform, LoadKey, number_of
 from fingerpad.scene.messages import is_formula, show
 from fingerpad.scene.waveform import MOST, Waveform
 from geometry.units import Switch, Table
@@ -78,21 +67,21 @@ class Load(Table):
 
     name: Annotated[str, AfterValidator(load_name)]
     """Name of the load, also of the load's pictures; see :mod:`fingerpad.scene.loads`."""
-    f_ext: Annotated[float | Waveform | None, FORCE] = None
+    f_ext: Annotated[float | Waveform | None, controls.FORCE] = None
     """External normal force on the bone (N/m), or a waveform. Zero is allowed only under voltage, which then holds the
     skin on the screen."""
-    bone_height: Annotated[float | Waveform | None, HEIGHT] = None
+    bone_height: Annotated[float | Waveform | None, controls.HEIGHT] = None
     """Change of the bone's height from the unloaded position (m), negative when pressed, or a waveform."""
-    voltage: Annotated[float | CarriedWaveform | None, VOLTAGE] = None
+    voltage: Annotated[float | CarriedWaveform | None, controls.VOLTAGE] = None
     """Instantaneous voltage U (V), or a waveform. The attraction goes with its square: the sign changes no force."""
-    bone_x: Annotated[float | Waveform | None, PLACE] = None
+    bone_x: Annotated[float | Waveform | None, controls.PLACE] = None
     """Horizontal position of the bone (m), zero when unloaded, or a waveform."""
-    bone_x_by: Annotated[float | None, MOVE] = None
+    bone_x_by: Annotated[float | None, controls.MOVE] = None
     """The same as a move (m) from where the bone is when the load begins."""
-    speed: Annotated[float | None, SPEED] = None
+    speed: Annotated[float | None, controls.SPEED] = None
     """Speed (m/s) of the bone on its way, which makes it a load over time. The model is quasi-static: the speed sets
     how long the way takes, by which viscous layers, friction in time and a drive act."""
-    duration: Annotated[float | None, DURATION] = None
+    duration: Annotated[float | None, controls.DURATION] = None
     """Time (s) that the load takes, in place of a speed. The bone moves evenly in time; of a force its root changes
     evenly, and of a voltage its square, as the attraction does."""
     until_full_slip: Switch = False
@@ -101,55 +90,48 @@ class Load(Table):
 
     @model_validator(mode="after")
     def _consistent(self) -> "Load":
-        given, keys = self.given(), keys_of_load()
-        for name, one in ((name, keys[name].instead) for name in given):
+        given, acting = self.given(), self.controls()
+        for name, one in ((name, keys_of_load()[name].instead) for name in given):
             if one in given:
                 values = f"{one} is {_shown(given[one])} and {name} is {_shown(given[name])}"
-                raise ValueError(f"{values}; {keys[name].remedy}")
-        if not self.controls():
-            *first, last = (name for name, key in keys.items() if isinstance(key, Control))
+                raise ValueError(f"{values}; {keys_of_load()[name].remedy}")
+        if not acting:
+            *first, last = (name for name, key in keys_of_load().items() if not key.paces)
             raise ValueError(
                 f"name is {show(self.name)} and nothing else is given; it must come with at least one of "
                 f"{', '.join(first)} and {last}"
             )
-        waves = [name for name, value in given.items() if isinstance(value, Waveform)]
-        held = [name for name, control in self.controls().items() if control.held or name in waves]
-        for name in held if self.until_full_slip else ():
+        name, wave = self.over_time or ("", None)
+        held = [each for each, key in acting.items() if key.held or each == name]
+        for each in held if self.until_full_slip else ():
             raise ValueError(
-                f"{name} is {_shown(given[name])} and until_full_slip is true, which may stop before that is reached; "
-                f"{name} must come in a load of its own"
+                f"{each} is {_shown(given[each])} and until_full_slip is true, which may stop before that is reached; "
+                f"{each} must come in a load of its own"
             )
-        if self.speed is not None and (number_of(self.bone_x) is None and self.bone_x_by is None):
-            raise ValueError(
-                f"speed is {show(self.speed)} and the bone does not move"
-                + ("; give bone_x or bone_x_by too" if self.bone_x is None else " by a number; give a duration")
-            )
-        for wave in waves[:1]:
-            for name in (name for name in held if name != wave):
-                raise ValueError(
-                    f"{name} is {_shown(given[name])} and {wave} is a waveform; {name} must come in a load of its own, "
-                    "before it"
-                )
-            if self.speed is None and self.duration is None and given[wave].end == math.inf:
-                raise ValueError(
-                    f"{wave} is a {given[wave].waveform} and the load takes no time; give a speed or duration"
-                )
+        if self.speed is not None and number_of(self.bone_x) is None and self.bone_x_by is None:
+            how = "; give bone_x or bone_x_by too" if self.bone_x is None else " by a number; give a duration"
+            raise ValueError(f"speed is {show(self.speed)} and the bone does not move{how}")
+        for each in held if wave is not None else ():
+            if each != name:
+                words = f"{each} is {_shown(given[each])} and {name} is a waveform"
+                raise ValueError(f"{words}; {each} must come in a load of its own, before it")
+        if wave is not None and wave.end == math.inf and self.speed is None and self.duration is None:
+            raise ValueError(f"{name} is a {wave.waveform} and the load takes no time; give a speed or duration")
         return self
 
     def given(self) -> dict[str, Any]:
         """Return the numbers and waveforms that are given, by key."""
         return {name: value for name in keys_of_load() if (value := getattr(self, name)) is not None}
 
-    def controls(self) -> dict[str, Control]:
+    def controls(self) -> dict[str, LoadKey]:
         """Return what is controlled, by key."""
-        return {name: key for name in self.given() if isinstance(key := keys_of_load()[name], Control)}
+        return {name: key for name, key in keys_of_load().items() if name in self.given() and not key.paces}
 
     def aims(self) -> Iterator[str]:
         """Yield in words what the load changes."""
         for name, value in self.given().items():
-            key = keys_of_load()[name]
-            slides = self.until_full_slip and isinstance(key, Control)
-            yield key.in_words(value) + (", or until full slip" if slides else "")
+            until = ", or until full slip" if self.until_full_slip and name in self.controls() else ""
+            yield keys_of_load()[name].in_words(value) + until
 
     @property
     def over_time(self) -> tuple[str, Waveform] | None:

@@ -12,8 +12,7 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, Field, PrivateAttr, ValidationError, model_validator
 
 from fingerpad import notebook
-from fingerpad.scene.carrier import CarriedWaveform
-from fingerpad.scene.controls import FORCE, VOLTAGE
+from fingerpad.scene.controls import FORCE, VOLTAGE, CarriedWaveform
 from fingerpad.scene.drive import Drive, Electric, drive_of, refuse_drives
 from fingerpad.scene.fingers import PAPER, FingerName
 from fingerpad.scene.keys import every

@@ -30,7 +30,7 @@ POINTS = 2000
 """Most points of a waveform."""
 MEASURES = ("amplitude", "peak_to_peak", "rms")
 """Keys that say how large a wave is; one of them is given, and none of a file."""
-Probe = Annotated[Finite, within(1e-3, 1e5)]
+PROBES = Range(1e-3, 1e5)
 _LOST = 0.01  # of the mean square
 Seconds = Annotated[Finite, within(1e-9, 1e5, "s", zero=True)]
 Sample = tuple[float, float]

@@ -20,11 +20,11 @@ from typing import Annotated, Any, ClassVar, Literal
 import numpy as np
 from annotated_types import Ge, Le
 from numpy.typing import ArrayLike, NDArray
-from pydantic import BeforeValidator, Field, Strict, model_validator
+from pydantic import BeforeValidator, Field, Strict, WrapValidator, model_validator
 
 from fingerpad.scene.messages import show
-from fingerpad.scene.wavefile import MEASURES, Probe, Sample, Seconds, or_zero, refined, refuse_table, table
-from geometry.units import Finite, Range, Switch, Table, limits_of, within
+from fingerpad.scene.wavefile import MEASURES, PROBES, Sample, Seconds, or_zero, refined, refuse_table, table
+from geometry.units import Finite, Range, Switch, Table, within
 
 SAMPLES = 24
 """Samples of a period at ``numerics.step_scale`` 1."""
@@ -91,7 +91,7 @@ class Waveform(Table):
     stores only its points."""
     column: Annotated[str | None, Field(exclude=True, max_length=100)] = None
     """Name of the column of values in a file with several, as ``CH1`` or ``CH1 (V)``."""
-    probe: Annotated[Probe | None, Field(exclude=True)] = None
+    probe: Annotated[Annotated[Finite, WrapValidator(PROBES)] | None, Field(exclude=True)] = None
     """Factor on the values of a file, 1 by default; 100 for a channel without the factor of its 1:100 probe."""
     repeat: Switch = False
     """Whether a file's points repeat themselves for as long as a load takes, as the other waveforms do."""
@@ -111,7 +111,7 @@ class Waveform(Table):
             return data
         column, probe = data.get("column"), data.get("probe")
         factor = 1.0 if probe is None else probe
-        if not isinstance(column, str | None) or type(factor) not in (int, float) or factor not in limits_of(Probe):
+        if not isinstance(column, str | None) or type(factor) not in (int, float) or factor not in PROBES:
             return data  # for the checks of these keys
         for name in ("times", "values"):
             if data.get(name) is not None:
