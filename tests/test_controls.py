@@ -28,7 +28,7 @@ def test_every_control_is_a_waveform_of_its_own_unit(name):
     limits = WAVES[name].limits
     of = {"amplitude": f"{limits.high / 200} {limits.unit}", "offset": limits.high / 100}
     scene = from_data({"history": [PRESS, {"name": "wave", "duration": 1.0, name: SINE | of}]})
-    assert scene.history[1].wave.high == pytest.approx(0.015 * limits.high)
+    assert scene.history[1].wave.peak == pytest.approx(0.015 * limits.high)
     assert pickle.loads(pickle.dumps(scene)) == scene == from_data(scene.parameters())
     key = by_name(Scene)[f"history[].{name}.amplitude"]
     assert (key.unit, key.limits.high) == (limits.unit, limits.high)

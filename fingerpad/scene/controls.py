@@ -69,12 +69,12 @@ class CarriedWaveform(Waveform):
                 f"{given} and the file has times {step:.4g} s apart; they must be at most {0.5 / frequency:.4g} s "
                 "apart, two in a period (Nyquist)"
             )
-        if self.frequency is not None and frequency <= self.frequency:
-            raise ValueError(
-                f"{given} and frequency is {show(self.frequency)} Hz; the carrier must have the higher one"
-            )
+        if self.times is None and frequency <= (self.frequency or 0.0):
+            both = f"{given} and frequency is {show(self.frequency)} Hz"
+            raise ValueError(f"{both}; the carrier must have the higher one")
         if self.times is None and (periods := frequency * self.period) > _MOST_CARRIED:
-            raise ValueError(f"{given}, {periods:.4g} periods in one of the drive; there must be at most 2000")
+            words = f"{given}, {periods:.4g} periods in one of the drive"
+            raise ValueError(f"{words}; there must be at most {_MOST_CARRIED:g}")
         return self
 
     def _square_mean(self) -> float:
@@ -171,4 +171,4 @@ def number_of(value: float | Waveform | None) -> float | None:
 
 def ends_of(value: float | Waveform | None) -> tuple[float, float]:
     """Return the smallest and the largest value of a control, 0 where it stays."""
-    return (value.low, value.high) if isinstance(value, Waveform) else (value or 0.0, value or 0.0)
+    return value.ends if isinstance(value, Waveform) else (value or 0.0, value or 0.0)

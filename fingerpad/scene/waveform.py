@@ -147,8 +147,8 @@ class Waveform(Table):
         reach = f"offset is {show(self.offset)} and {given[0]} is {show(getattr(self, given[0]))}, together"
         if self.peak > most.high:
             raise ValueError(f"{reach} {self.peak:g} {unit}; they must reach at most {most.high:g} {unit}")
-        if most.sides == 1 and self.low < -_ROUNDOFF * self.peak:
-            raise ValueError(f"{reach} down to {self.low:g} {unit}; they must not go below 0")
+        if most.sides == 1 and self.ends[0] < -_ROUNDOFF * self.peak:
+            raise ValueError(f"{reach} down to {self.ends[0]:g} {unit}; they must not go below 0")
 
     # -- what it is --------------------------------------------------------------------------------------
     @property
@@ -175,19 +175,15 @@ class Waveform(Table):
         return math.inf if self.times is None or self.repeat else self.times[-1]
 
     @property
-    def low(self) -> float:
-        """Smallest value."""
-        return min(self.values) if self.values else self.offset - self.height
-
-    @property
-    def high(self) -> float:
-        """Largest value."""
-        return max(self.values) if self.values else self.offset + self.height
+    def ends(self) -> tuple[float, float]:
+        """Smallest and largest value."""
+        found = self.values or (self.offset - self.height, self.offset + self.height)
+        return min(found), max(found)
 
     @property
     def peak(self) -> float:
         """Largest amount of the value."""
-        return max(abs(self.low), abs(self.high))
+        return max(map(abs, self.ends))
 
     @property
     def mean(self) -> float:
