@@ -225,11 +225,6 @@ class Range:
     zero: bool = False
     sides: int = 1
 
-    @property
-    def annotation(self) -> Any:
-        """The annotation of a number within the range."""
-        return Annotated[Finite, WrapValidator(self)]
-
     def __contains__(self, value: float) -> bool:
         """Return whether a value is allowed."""
         amount = abs(value) if self.sides == 2 else value

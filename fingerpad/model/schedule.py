@@ -28,7 +28,7 @@ def targets(load: Load, x: float, step_scale: float) -> list[Target]:
     name, wave = load.over_time or ("", None)
     aims: dict[str, Any] = {
         key.moves or each: getattr(load, each) + (now[key.moves] if key.moves else 0.0)
-        for each, key in load.controls().items()
+        for each, key in load.acting().items()
         if each != name
     }
     if wave is None:

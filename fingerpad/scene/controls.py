@@ -10,6 +10,7 @@ A voltage can have a carrier. The wave is then the envelope of a sine of higher 
 .. math:: U(t) = U_0 + \hat U \, \frac{1 + m \, w(f t)}{1 + m} \sin 2 \pi f_c t
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 from types import NoneType
@@ -17,7 +18,7 @@ from typing import Annotated, Any, TypeVar, get_args
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Discriminator, Field, GetCoreSchemaHandler, Tag, create_model, model_validator
+from pydantic import Discriminator, Field, GetCoreSchemaHandler, Tag, WrapValidator, create_model, model_validator
 from pydantic_core import CoreSchema
 
 from fingerpad.scene.messages import NUMBER, WAVE, show
@@ -96,7 +97,7 @@ class CarriedWaveform(Waveform):
 def _in_unit(name: str, limits: Range, base: type[_Wave]) -> type[_Wave]:
     """Return the waveforms whose sizes and values are within limits; ``name`` is theirs in this module, for pickle."""
     low, high, unit = limits.low, limits.high, limits.unit
-    number: Any = limits.annotation
+    number: Any = Annotated[Finite, WrapValidator(limits)]
     size, double = (Annotated[Finite, within(low, most, unit)] | None for most in (high, 2 * high))
     values: Any = Annotated[tuple[number, ...], LISTED] | None
     types = {"amplitude": size, "peak_to_peak": double, "rms": size, "offset": number, "values": values}
@@ -125,16 +126,17 @@ class LoadKey:
     """Control that it moves from its present value; empty where its number is the value."""
     held: bool = True
     """Whether a slide to full slip may stop before it is reached."""
-    paces: bool = False
-    """Whether it sets how long the load takes, and controls nothing."""
+    paces: Callable[[float, float], float] | None = None
+    """How long the load takes (s), by the number and the way of the bone (m); None of what is controlled."""
 
     @property
     def annotation(self) -> Any:
         """What it can be, for pydantic and for the reference of keys."""
+        number = Annotated[Finite, WrapValidator(self.limits)]
         if self.wave is None:
-            return self.limits.annotation
-        number, wave = (Annotated[of, Tag(tag)] for of, tag in ((self.limits.annotation, NUMBER), (self.wave, WAVE)))
-        return Annotated[number | wave, Discriminator(lambda v: WAVE if isinstance(v, dict | Waveform) else NUMBER)]
+            return number
+        either: Any = Annotated[number, Tag(NUMBER)] | Annotated[self.wave, Tag(WAVE)]  # type: ignore[name-defined]
+        return Annotated[either, Discriminator(lambda given: WAVE if isinstance(given, dict | Waveform) else NUMBER)]
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         """Return the schema of what it can be."""
@@ -160,8 +162,9 @@ HEIGHT = LoadKey(_LENGTH, "bone's height to {:+g} mm of the unloaded one", "f_ex
 VOLTAGE = LoadKey(_VOLTS, "voltage to {:g} V", wave=VoltageWaveform)
 PLACE = LoadKey(_LENGTH, "bone sideways to {:g} mm", wave=LengthWaveform, held=False)
 MOVE = LoadKey(_LENGTH, "bone sideways by {:+g} mm", "bone_x", "give the place or the move", moves="bone_x", held=False)
-SPEED = LoadKey(Range(1e-6, 100.0, "m/s"), "at {:g} mm/s", paces=True)
-DURATION = LoadKey(Range(1e-6, 1e5, "s"), "in {:g} s", "speed", "one follows from the other, so give one", paces=True)
+SPEED = LoadKey(Range(1e-6, 100.0, "m/s"), "at {:g} mm/s", paces=lambda speed, way: abs(way) / speed)
+DURATION = LoadKey(Range(1e-6, 1e5, "s"), "in {:g} s", "speed", "one follows from the other, so give one",
+                   paces=lambda seconds, _: seconds)  # fmt: skip
 
 
 def number_of(value: float | Waveform | None) -> float | None:

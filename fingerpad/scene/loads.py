@@ -90,7 +90,7 @@ class Load(Table):
 
     @model_validator(mode="after")
     def _consistent(self) -> "Load":
-        given, acting = self.given(), self.controls()
+        given, acting = self.given(), self.acting()
         for name, one in ((name, keys_of_load()[name].instead) for name in given):
             if one in given:
                 values = f"{one} is {_shown(given[one])} and {name} is {_shown(given[name])}"
@@ -115,7 +115,7 @@ class Load(Table):
             if each != name:
                 words = f"{each} is {_shown(given[each])} and {name} is a waveform"
                 raise ValueError(f"{words}; {each} must come in a load of its own, before it")
-        if wave is not None and wave.end == math.inf and self.speed is None and self.duration is None:
+        if wave is not None and wave.end == math.inf and given.keys() == acting.keys():
             raise ValueError(f"{name} is a {wave.waveform} and the load takes no time; give a speed or duration")
         return self
 
@@ -123,14 +123,14 @@ class Load(Table):
         """Return the numbers and waveforms that are given, by key."""
         return {name: value for name in keys_of_load() if (value := getattr(self, name)) is not None}
 
-    def controls(self) -> dict[str, LoadKey]:
+    def acting(self) -> dict[str, LoadKey]:
         """Return what is controlled, by key."""
         return {name: key for name, key in keys_of_load().items() if name in self.given() and not key.paces}
 
     def aims(self) -> Iterator[str]:
         """Yield in words what the load changes."""
         for name, value in self.given().items():
-            until = ", or until full slip" if self.until_full_slip and name in self.controls() else ""
+            until = ", or until full slip" if self.until_full_slip and name in self.acting() else ""
             yield keys_of_load()[name].in_words(value) + until
 
     @property
@@ -161,7 +161,7 @@ class Load(Table):
     @property
     def takes_time(self) -> bool:
         """Whether it is a load over time."""
-        return self.speed is not None or self.duration is not None or self.wave is not None
+        return self.wave is not None or self.given().keys() != self.acting().keys()
 
     def place(self, x: float) -> float | None:
         """Return where the load takes the bone (m) from a place x (m); None where it stays."""
@@ -171,11 +171,10 @@ class Load(Table):
 
     def seconds(self, way: float) -> float:
         """Return how long the load takes (s) for a way of the bone (m); 0 where it is none over time."""
-        if self.speed is not None:
-            return abs(way) / self.speed
-        if self.duration is None:
-            return 0.0 if self.wave is None else self.wave.end
-        return self.duration
+        for name, value in self.given().items():
+            if (paces := keys_of_load()[name].paces) is not None:
+                return paces(value, way)
+        return 0.0 if self.wave is None else self.wave.end
 
 
 @cache
@@ -243,7 +242,7 @@ def _refuse_floating(history: Sequence[Load]) -> None:
     for key, load, way in ways(history):
         if load.bone_height is not None:
             acts["f_ext"] = None
-        for name in acts.keys() & load.controls().keys():
+        for name in acts.keys() & load.acting().keys():
             acts[name] = number_of(getattr(load, name))
         name, wave = load.over_time or ("", None)
         if wave is not None and name in acts:
