@@ -52,6 +52,17 @@ def test_columns_are_named_as_written_with_their_units(column, factor, tmp_path,
     assert main(["drive", "--file", str(file), "--column", column, "--frequency", "60"]) == 0
 
 
+def test_files_are_read_in_the_unit_of_their_control(tmp_path):
+    """Newtons per metre and metres of one file, by their columns; less than a nanometre is none."""
+    of = {"waveform": "file", "file": write(tmp_path, "t/ms,F (N/cm),h/um\n0,0.01,-20\n500,0.02,0\n1000,0.01,5e-4\n")}
+    loads = [{"name": "a", "f_ext": of | {"column": "F"}}, {"name": "b", "bone_height": of | {"column": "h"}}]
+    force, height = (load.wave for load in fp.Scene(history=loads).history)
+    assert (force.times, force.values) == ((0, 0.5, 1), (1, 2, 1))
+    assert height.values == (pytest.approx(-20e-6), 0, 0)
+    with pytest.raises(fp.SceneError, match="has 'h/um' in 'um', which is not a unit of force per length"):
+        fp.Scene(history=[{"name": "a", "f_ext": of | {"column": "h"}}])
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [

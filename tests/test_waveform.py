@@ -1,14 +1,20 @@
-"""Voltages over time in scenes: their samples, files, units and refusals."""
+"""Controls over time in scenes: their samples, files, units and refusals."""
 
 import math
+import pickle
 
 import pytest
 
-from fingerpad.scene import SceneError, from_data, load, override
+from fingerpad.scene import Scene, SceneError, from_data, load, override
+from fingerpad.scene.keys import by_name
+from fingerpad.scene.loads import keys_of_load
 from fingerpad.scene.waveform import MOST, SAMPLES, Waveform
 
 SINE = {"waveform": "sine", "amplitude": 200.0, "frequency": 60.0}
 PRESS = {"name": "press", "f_ext": 1.0}
+FORCE = SINE | {"offset": 1.0, "amplitude": 1.0}
+LIFT = SINE | {"amplitude": 1e-3}
+LONG = {"duration": 1.0}
 TABLE = "time (s),voltage (V)\n"
 
 
@@ -96,6 +102,20 @@ def test_units_and_changes(write):
     assert load(path, {"history[1].voltage": "-80 V"}).history[1].level == -80.0
 
 
+@pytest.mark.parametrize("name", [name for name, key in keys_of_load().items() if key.wave is not None])
+def test_every_control_is_a_waveform_of_its_own_unit(name):
+    """With the ranges and the unit of its key in the reference; pickled and printed as any scene."""
+    limits = keys_of_load()[name].limits
+    of = {"amplitude": f"{limits.high / 200} {limits.unit}", "offset": limits.high / 100, "waveform": "square"}
+    scene = from_data({"history": [PRESS, {"name": "wave", "duration": 1.0, name: SINE | of}]})
+    assert scene.history[1].wave.peak == pytest.approx(0.015 * limits.high)
+    assert pickle.loads(pickle.dumps(scene)) == scene == from_data(scene.parameters())
+    key = by_name(Scene)[f"history[].{name}.amplitude"]
+    assert (key.unit, key.limits.high) == (limits.unit, limits.high)
+    words = "0.5 mm about 1 mm" if limits.unit == "m" else f"25 {limits.unit} about 50 {limits.unit}"
+    assert f": square of {words} at 60 Hz" in next(scene.history[1].aims())
+
+
 # -- refusals ------------------------------------------------------------------------------------------
 def refusal(*loads: dict) -> str:
     with pytest.raises(SceneError) as error:
@@ -129,6 +149,20 @@ def refusal(*loads: dict) -> str:
             {"voltage": {"waveform": "file", "times": [0, 1], "values": [0, 9]}, "duration": 2.0},
             "history[1].voltage has values up to 1 s and the load takes 2 s",
         ),
+        (
+            {"f_ext": FORCE | {"amplitude": 1.5}} | LONG,
+            "history[1].f_ext.offset is 1 and history[1].f_ext.amplitude is",
+        ),
+        ({"f_ext": FORCE} | LONG, "history[1].f_ext goes through 0 while voltage is 0, where nothing holds the skin"),
+        ({"f_ext": FORCE | {"offset": "1 V"}}, "history[1].f_ext.offset is '1 V'; its unit is not a unit of force per"),
+        ({"f_ext": FORCE | {"carrier": {"frequency": 9.0}}}, "history[1].f_ext.carrier is not a key of history[1].f_"),
+        ({"f_ext": {"waveform": "file", "times": [0, 1], "values": [1, -1]}}, "history[1].f_ext.values[1] is -1 N/m;"),
+        ({"f_ext": FORCE, "voltage": SINE} | LONG, "history[1].voltage is a waveform and history[1].f_ext is a wave"),
+        ({"f_ext": FORCE, "bone_height": LIFT}, "history[1].f_ext is a waveform and history[1].bone_height is a wave"),
+        ({"bone_height": LIFT | {"offset": 0.1}} | LONG, "history[1].bone_height.offset is 0.1 and history[1].bone_h"),
+        ({"bone_height": LIFT}, "history[1].bone_height is a sine and the load takes no time; give a history[1].speed"),
+        ({"bone_x": LIFT, "speed": 0.1}, "history[1].speed is 0.1 and the bone does not move by a number; give a his"),
+        ({"bone_x": LIFT, "until_full_slip": True} | LONG, "history[1].bone_x is a waveform and history[1].until_ful"),
     ],
     ids=lambda value: "" if isinstance(value, dict) else value[:40],
 )
