@@ -214,7 +214,7 @@ class _Attempt:
         return self._state(self.simulation.carried()) | {"items": self.report.record.states, "kept": self._has_kept}
 
     def resume(self, kept: dict[str, Any]) -> RestartRequired | None:
-        """Go on from a checkpoint, as :func:`fingerpad.runs.checkpoint.read` gives it, or from another mesh; collective.
+        """Go on from a checkpoint, as :func:`fingerpad.runs.checkpoint.read` gives it, or another mesh; collective.
 
         Returns:
             That all loads must be gone through again, where the state was of another mesh and is not found on this one.

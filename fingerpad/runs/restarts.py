@@ -56,7 +56,7 @@ class Restarts:
         self.table, self.notes, self._seconds = kept["table"], kept["notes"], kept["seconds"]
 
     def record(self, restart: RestartRequired, states: Sequence[ContactState], finger: Finger, seconds: float) -> None:
-        """Record a restart; states, finger and processor time (s) are those until here. One that carries is shown alone."""
+        """Record a restart, or show one that carries; states, finger and processor time (s) are those until here."""
         mesh, counts = restart.model.mesh, finger.solver.counts
         step, load = (states[-1].step, states[-1].load) if states else (0, "start")
         whole = restart.model.options.both_halves

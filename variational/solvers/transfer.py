@@ -25,8 +25,9 @@ its cone, none can stick while Newton's method moves the skin by less than :math
 state of full slip itself, of which the old mesh's history is no part. In a state with sticking points the history does
 remain the old mesh's, interpolated, with the error that its path made.
 
-**More skin that can touch.** A ridge that could not touch on the old mesh has the history of the valley beside it, and the
-air gap of one without contact. So a path goes on where more of the skin must be able to touch than was meshed for it.
+**More skin that can touch.** A ridge that could not touch on the old mesh has the history of the valley beside it, and
+the air gap of one without contact. So a path goes on where more of the skin must be able to touch than was meshed for
+it.
 """
 
 from dataclasses import replace
