@@ -6,10 +6,10 @@ from scipy.integrate import quad
 
 import fingerpad as fp
 from fingerpad.reduced import press
+from fingerpad.reduced.closed_form import closed_form
 from fingerpad.reduced.cylinders import over_forces
 from fingerpad.reduced.press import Press
 from fingerpad.runs import press as making
-from fingerpad.scene.fingers import FINGERS
 from tests.small_finger import NINE
 from variational.attraction.tip import Power, Round, kernel
 
@@ -46,7 +46,7 @@ def test_gap_beside_a_flat_tip_is_that_of_its_punches():
 
 
 def test_kernel_of_a_profile():
-    """The integral of the theory, and the slope of its logarithm; of a small contact of a sinusoid that of its crest."""
+    """The integral of the theory, and its logarithmic slope; of a small contact of a sinusoid that of its crest."""
     wave, heights, a = 483e-6, np.array([30e-6, -7e-6, 1e-6]), np.array([80e-6])
     q = 2 * np.pi / wave * np.arange(1, 4)
 
@@ -76,7 +76,7 @@ def test_press_is_made_once_and_kept(cache, capsys):
     """For every friction, voltage and roughness, and by the model; another finger has another press."""
     scene = fp.Scene(geometry=FLAT, f_ext=50.0)
     with pytest.raises(fp.SceneError, match="^the finger of this scene has no press yet, .*; fp.press.scene. makes it"):
-        fp.closed_form(scene)
+        closed_form(scene)
     first = fp.run(scene, model="cylinders", voltage=100.0)
     assert "one press of this finger is made" in capsys.readouterr().err and press.file_of(scene).exists()
     press._found.cache_clear()
@@ -106,11 +106,6 @@ def test_closed_form_has_the_numbers_of_the_model():
     for name, value in {"mu_app": "mu_app", "contact": "contact_area", "indentation": "indentation"}.items():
         assert getattr(found, name) == pytest.approx(known[value], rel=1e-3), name
     assert found.share == pytest.approx(found.contact / found.gross)
-
-
-@pytest.mark.parametrize("name", FINGERS)
-def test_package_has_the_press_of_each_finger(name):
-    assert press.name(fp.Scene(finger=name)) in press.shipped()
 
 
 @pytest.mark.slow
