@@ -268,6 +268,7 @@ def test_friction_over_time_is_that_of_the_force():
     assert load.over_time.f_t_amplitude[0] == pytest.approx(0.25 * MU_0, rel=2e-3)
     assert load.over_time.mean["f_t"] == pytest.approx(MU_0, rel=2e-3)
     assert load.extremes["f_t"].max == pytest.approx(1.25 * MU_0, rel=1e-6)
+    assert (load.extremes["f_ext"].min, load.over_time.mean["f_ext"]) == pytest.approx((0.75, 1.0), rel=1e-3)
     assert "In the load wave the friction force" in str(found)
 
 
