@@ -15,7 +15,7 @@
 # make paper FIGURE=6  a figure of the paper; python3 -m benchmarks.paper.figures lists them with their times
 # make measured  measured fingers beside this model's numbers; docs/measured.md, two minutes
 # make drive  friction over frequency and waveform of the voltage; docs/drive.md, a minute
-# make fingers    friction of fingers by name side by side; docs/assumptions.md
+# make fingers    friction of fingers by name side by side; docs/fingers.md
 # make viscosity  how skin relaxes, energy of random histories, friction after a step of voltage; docs/laws.md
 # make loads  seeded scenes of people's loads beside the closed form; docs/closed_form.md, an hour or two in pieces of twenty minutes
 # make feel   what people and nerves were measured to do beside spikes; docs/measured.md, ten minutes
