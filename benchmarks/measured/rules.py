@@ -1,6 +1,6 @@
 """The rules of the verdicts, the same for every row of a kind, and the forms that are fitted to curves.
 
-Their words are in ``docs/measured.md``. A measured form of a curve stands beside another one with as many
+Their words are at the head of data/findings.toml. A measured form of a curve stands beside another one with as many
 parameters.
 """
 
@@ -11,14 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
-HIT, PART, MISS = "hit", "partly", "miss"
-BUILT = "hit by construction"
-"""The model's equations or inputs leave nothing else: such a row tests nothing."""
+from benchmarks.measured.findings import Finding
+
+HIT, PART, MISS, OPEN = "hit", "partly", "miss", "not computed"
 EXPONENT = 0.25  # from the measured exponent: what 10 % of scatter makes of a factor of 2 in voltage
 RATIO, VALUE = 1.25, 2.0  # largest factors of a ratio that is hit, and of a number that is met partly
 MISFIT = 0.1  # rms of a fitted curve
 STRIKING, SIMILAR = 0.25, 0.1  # relative changes that count as strikingly higher, and as similar
 CHANGED = 0.03  # relative change from which on a gross area counts as another: half a ridge of 17
+SPREADS = 1.5  # from the measured value
 
 
 def by_share(share: float) -> str:
@@ -33,6 +34,30 @@ def by_factor(low: float, high: float, least: float, most: float, allowed: float
     """
     beyond = max(least / low, high / most, 1.0)
     return HIT if beyond <= allowed else PART if beyond <= VALUE else MISS
+
+
+def by_spread(low: float, high: float, value: float, spread: float) -> str:
+    """Return the verdict on numbers from ``low`` to ``high`` beside a measured one and its standard deviation."""
+    return HIT if max(value - low, high - value) <= SPREADS * spread else MISS
+
+
+def by_bar(number: float, hit: float, part: float | None = None) -> str:
+    """Return the verdict on a number that should be small."""
+    return HIT if number <= hit else PART if part is not None and number <= part else MISS
+
+
+def by_rule(row: Finding, low: float, high: float) -> str:
+    """Return the verdict on numbers from ``low`` to ``high`` by the rule of a finding: ratio, range or spread."""
+    if row.spread is not None and row.rule == "spread":
+        return by_spread(low, high, row.bounds[0], row.spread)
+    sign = np.sign(row.bounds[0])
+    if min(sign * low, sign * high) <= 0:
+        return MISS
+    return by_factor(
+        *sorted((sign * low, sign * high)),
+        *sorted(sign * each for each in row.bounds),
+        {"ratio": RATIO}.get(row.rule, 1.0),
+    )
 
 
 def by_form(misfits: Sequence[float], others: Sequence[float]) -> str:
