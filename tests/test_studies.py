@@ -204,11 +204,11 @@ STEP = {
 NUMBERS = {
     "viscous": {"25": {**STEP, "rise": STEP["rise"] | {"f_t": 3.0}}, "75": STEP, "150": STEP},
     "elastic": {load: STEP for load in ("25", "75", "150")},
-    "gratings": {
-        (load, period): {"f_t": 1e-3 / period, "rate": 25 / load / period, "RA1": 25 / load / period}
+    "gratings": [
+        {"load": load, "period": period, "f_t": 1e-3 / period, "rate": 25 / load / period, "RA1": 25 / load / period}
         for load in felt.GRATING_LOADS
         for period in felt.PERIODS
-    },
+    ],
     "onset": {"RA1 strain": 3.0, "RA1": 2.0, "SA1": 2.0, "SA1 before": 1.0},
     "hold": {"RA1": 0, "least": 1.5, "most": 2.0},
     "subfield": {"width": 0.4e-3},
@@ -222,9 +222,9 @@ WORSE = {
     "rise_friction": ("viscous", "150", "rise", "f_t", 1.01),
     "rise_contact": ("viscous", "25", "rise", "strain", 1.0),
     "rise_low_load": ("viscous", "25", "rise", "f_t", 1.9),
-    "gratings_period": ("gratings", (4.0, 2.5e-3), "f_t", 1.0),
-    "gratings_load": ("gratings", (10.0, 1e-3), "RA1", 1e5),
-    "gratings_rate": ("gratings", (4.0, 1e-3), "rate", 0.0),
+    "gratings_period": ("gratings", 1, "f_t", 1.0),
+    "gratings_load": ("gratings", 2, "RA1", 1e5),
+    "gratings_rate": ("gratings", 0, "rate", 0.0),
     "slip_onset": ("onset", "SA1", 2.1),
     "hold_adapts": ("hold", "RA1", 1),
     "subfield": ("subfield", "width", 0.51e-3),

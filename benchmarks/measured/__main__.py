@@ -1,10 +1,12 @@
 """Findings on human fingers beside this model's numbers, row by row.
 
 environment/run python3 -m benchmarks.measured [ROW … | FINGER …] [--jobs 2] [--draw]     also: make measured ROW=softer
+environment/run python3 -m benchmarks.measured --felt       the numbers of what is felt, ten minutes
 
 Rows are those of data/findings.toml. Each is computed with the finger that it names, from runs that rows share and that
 are kept in results/traces, so that an interrupted command goes on. With names of rows or fingers it prints these
-and keeps nothing. Otherwise it writes docs/measured.json, and from it docs/measured.md and its picture.
+and keeps nothing. Otherwise it writes docs/measured.json, and from it docs/measured.md and its picture. Numbers of what
+is felt are those of docs/felt.json, and those of viscous skin of docs/viscosity.json (make viscosity).
 """
 
 import argparse
@@ -12,7 +14,6 @@ import sys
 import tomllib
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -24,7 +25,7 @@ from benchmarks import harness
 from benchmarks.harness import cells
 from benchmarks.measured import felt, findings, fingers, rows, rules, timed
 from benchmarks.measured.findings import Finding
-from benchmarks.runs import Run, Unfinished
+from benchmarks.runs import Unfinished
 from fingerpad.results.pictures import style
 from fingerpad.scene import Scene
 
@@ -38,7 +39,9 @@ STATES = {
     "paper": "the default finger: the finding names no state, or its runs would be too long for another",
 }
 """Of the fingers that findings name."""
-_COMPUTED = {**rows.ROWS, **felt.ROWS, **timed.ROWS}
+_KEPT = {"felt": felt.ROWS, "viscosity": timed.ROWS}
+"""Rows of the numbers that other commands keep."""
+_COMPUTED: dict[str, Any] = {**rows.ROWS, **felt.ROWS, **timed.ROWS}
 
 
 # -- runs ------------------------------------------------------------------------------------------------------
@@ -52,24 +55,19 @@ def scenes(wanted: Sequence[Finding]) -> dict[str, Scene]:
     """Return the scenes that findings need, by finger and kind."""
     own = {row.finger for row in wanted if row.id in rows.ROWS}
     names = [name for name in fingers.NAMES if name in own | {other for each in own for other in _BESIDE[each]}]
-    found = {f"{name}: {kind}": scene for name in names for kind, scene in fingers.scenes(name).items()}
-    if any(row.id in felt.ROWS for row in wanted):
-        found |= {f"felt: {kind}": scene for kind, scene in felt.scenes().items()}
-    return found
+    return {f"{name}: {kind}": scene for name in names for kind, scene in fingers.scenes(name).items()}
 
 
 def judged(wanted: Sequence[Finding], out: Path, docs: Path) -> Iterator[tuple[str, dict[str, float], str]]:
     """Yield for each finding its name, numbers and verdict; without its runs it is not computed."""
     every = fingers.fingers(fingers.NAMES, out)
-    seen = felt.numbers(out) if any(row.id in felt.ROWS for row in wanted) else {}
+    beside = {each: harness.kept(name, docs).numbers for name, part in _KEPT.items() for each in part}
     for row in wanted:
         try:
             if row.id in rows.ROWS:
                 found = rows.ROWS[row.id](row, every[row.finger], every)
-            elif row.id in felt.ROWS:
-                found = felt.ROWS[row.id](seen)
             else:
-                found = timed.ROWS[row.id](harness.kept("viscosity", docs).numbers)
+                found = _COMPUTED[row.id](beside[row.id])
         except Unfinished as error:
             print(f"{row.id}: {error}")
             found = {}, rules.OPEN
@@ -82,12 +80,7 @@ def compute(args: argparse.Namespace) -> None:
     if unknown := set(args.names) - {row.id for row in chosen((), every)} - set(fingers.NAMES):
         raise SystemExit(f"{min(unknown)} is neither a row that is computed nor one of {', '.join(fingers.NAMES)}")
     wanted = chosen(args.names, every)
-    summaries = harness.run(asked := scenes(wanted), args, _LIMIT)
-    if any(name.startswith("felt") for name in asked):
-        with suppress(Unfinished):
-            summaries |= harness.run(
-                {"felt: same": felt.equal(Run(asked["felt: charged"], args.out).result)}, args, _LIMIT
-            )
+    summaries = harness.run(scenes(wanted), args, _LIMIT)
     found = {
         name: {"numbers": numbers, "verdict": verdict} for name, numbers, verdict in judged(wanted, args.out, args.docs)
     }
@@ -96,7 +89,7 @@ def compute(args: argparse.Namespace) -> None:
     if not args.names:
         missing = [name for name, summary in summaries.items() if "failure" in summary]
         presets = {name: fingers.preset(name) for name in fingers.NAMES}
-        numbers = {"rows": found, "missing": missing, "presets": presets, "subfield": felt.line()}
+        numbers = {"rows": found, "missing": missing, "presets": presets}
         harness.keep("measured", numbers, harness.made(summaries.values()), args.docs)
 
 
@@ -176,8 +169,9 @@ def site_error(errors: Any) -> float:
 
 def draw(docs: Path) -> Path:
     """Write docs/measured.md and its picture from docs/measured.json."""
-    numbers, every = harness.kept("measured", docs).numbers, table(docs)
-    harness.picture(docs / "measured.png", (11, 4), lambda figure: _paint(figure, numbers, every))
+    every = table(docs)
+    seen = harness.kept("felt", docs).numbers
+    harness.picture(docs / "measured.png", (11, 4), lambda figure: _paint(figure, seen, every))
     by_name = {row.finding.id: row for row in every}
     topics = list(dict.fromkeys(row.finding.topic for row in every))
     names: dict[str, Any] = {"every": every, "topics": topics, "sources": findings.read()[1], "count": judges(every)}
@@ -189,10 +183,10 @@ def draw(docs: Path) -> Path:
         "fits": fits,
         "built": sum(r.finding.built and r.verdict == rules.HIT and r.finding.role == "judge" for r in every),
     }
-    return harness.page(docs, "measured", "make measured", globals() | names)
+    return harness.page(docs, "measured", "make measured", globals() | names, "felt", "viscosity")
 
 
-def _paint(figure: Figure, numbers: Mapping[str, Any], every: Sequence[Row]) -> None:
+def _paint(figure: Figure, seen: Mapping[str, Any], every: Sequence[Row]) -> None:
     """Draw the verdicts by topic, thresholds of nerves, and the stress of one site under a moving line load."""
     left, middle, right = figure.subplots(1, 3)
     topics = list(dict.fromkeys(row.finding.topic for row in every if row.finding.role == "judge"))
@@ -206,7 +200,7 @@ def _paint(figure: Figure, numbers: Mapping[str, Any], every: Sequence[Row]) -> 
     left.invert_yaxis()
     left.legend(fontsize=8)
     felt.paint_thresholds(middle)
-    right.plot(1e3 * np.array(numbers["subfield"]["s"]), numbers["subfield"]["stress"], color=style.BLUE)
+    right.plot(1e3 * np.array(seen["subfield"]["s"]), seen["subfield"]["stress"], color=style.BLUE)
     right.axvspan(-0.2, 0.2, color=style.ORANGE, alpha=0.3, lw=0, label="measured subfield, 0.4 mm")
     right.set(xlabel="place of the line load along the skin (mm)", title="C  stress at a Merkel site, line load")
     right.legend(loc="lower center", fontsize=8)
@@ -216,8 +210,11 @@ def main(given: Sequence[str] | None = None) -> int:
     """Run the command."""
     parser = harness.parser(__doc__)
     parser.add_argument("names", nargs="*", metavar="ROW", help="rows or fingers; all without a name")
+    parser.add_argument("--felt", action="store_true", help="compute the numbers of what is felt alone")
     args = parser.parse_args(given)
-    if not args.draw:
+    if args.felt:
+        felt.compute(args)
+    elif not args.draw:
         compute(args)
     if not args.names:
         print(draw(args.docs))

@@ -5,7 +5,6 @@ rows are computed with it and the layers of the finger, unless a moist finger ha
 the gap are computed at all :data:`GAPS`, each with its own leak from the same peak.
 """
 
-from collections.abc import Mapping
 from functools import cache
 from typing import Any
 
@@ -13,7 +12,7 @@ import numpy as np
 
 from benchmarks.measured import rules
 from benchmarks.measured.findings import Finding
-from benchmarks.measured.fingers import VOLTAGES, Finger
+from benchmarks.measured.fingers import VOLTAGES, Case, Computation, Finger, Row
 from benchmarks.measured.rules import SIMILAR, STRIKING, by_factor, by_share
 from fingerpad.runs.drive import of_wave
 from fingerpad.scene import Scene
@@ -30,7 +29,6 @@ RISE = (10.0, 30.0, 100.0, 300.0, 1e3, 3e3, 1e4)  # Hz
 BELOW, ABOVE = (15.0, 30.0, 45.0), (120.0, 240.0, 480.0)  # Hz, either side of the crossover of waveforms
 SHAPE = (15.0, 30.0, 60.0, 120.0, 240.0, 480.0, 960.0, 1920.0)  # Hz
 Layers = tuple[float, float, float, float]
-Row = tuple[dict[str, float], str]
 
 
 def layers(gap: float, scene: Scene | None = None) -> Layers:
@@ -57,16 +55,16 @@ def _here(finger: Finger) -> Layers:
     return layers(REFERENCE, finger.scene)
 
 
-def _small(finger: Finger) -> Row:
+def _small(case: Case) -> Row:
     """Judge the change of mean friction and contact length from 30 to 230 Hz, at each force and amplitude.
 
     A sine has the friction of the constant voltage that attracts as much, between those of the runs.
     """
-    at, lossless = _here(finger), GapCircuit("lossless").share(230.0, *_here(finger))
+    at, lossless = _here(case.finger), GapCircuit("lossless").share(230.0, *_here(case.finger))
     squares = [[amplitude**2 / 2 * float(_share(f, at) / lossless) for f in (30.0, 230.0)] for amplitude in AMPLITUDES]
     changes = []
     for key in ("f_t", "contact_length"):
-        values = finger.slips(key)
+        values = case.finger.slips(key)
         ends = np.array([[np.interp(two, np.square(VOLTAGES), one) for two in squares] for one in values])
         changes.append(ends[..., 1] / ends[..., 0] - 1)  # of forces and amplitudes
     holds = np.abs(changes).max(axis=(0, 2)) <= SIMILAR
@@ -76,28 +74,28 @@ def _small(finger: Finger) -> Row:
     return numbers, by_share(float(holds.mean()))
 
 
-def _wide(finger: Finger) -> Row:
+def _wide(case: Case) -> Row:
     """Judge in how many steps attraction rises from 10 Hz to 10 kHz, at every gap."""
-    found = np.array([_share(RISE, at) for at in _all(finger)])
+    found = np.array([_share(RISE, at) for at in _all(case.finger)])
     rises, ratio = float((np.diff(found, axis=1) > 0).mean()), found[:, -1] / found[:, 0]
     return {"low": ratio.min(), "high": ratio.max(), "rises": rises}, by_share(rises)
 
 
-def _cut_off(finger: Finger) -> Row:
+def _cut_off(case: Case) -> Row:
     """Judge whether a first-order high-pass misses attraction over 10 to 500 Hz."""
     f: rules.Array = np.geomspace(10, 500, 40, dtype=np.float64)
-    fit = rules.of_largest(rules.high_pass, f, _share(tuple(f), _here(finger)))
+    fit = rules.of_largest(rules.high_pass, f, _share(tuple(f), _here(case.finger)))
     return {"misfit": fit.misfit, "cut": fit.parameter * 500}, by_share(float(fit.misfit > rules.MISFIT))
 
 
-def _peak(finger: Finger) -> Row:
-    peak = circuit(_here(finger)).peak(*_here(finger))
-    leaks = [circuit(at).resistance for at in _all(finger)]
+def _peak(case: Case) -> Row:
+    peak = circuit(_here(case.finger)).peak(*_here(case.finger))
+    leaks = [circuit(at).resistance for at in _all(case.finger)]
     return {"peak": peak, "low": leaks[0], "high": leaks[-1]}, by_factor(peak, peak, PEAK, PEAK, rules.RATIO)
 
 
-def _peak_high(finger: Finger) -> Row:
-    high = _share(tuple(np.geomspace(1e4, 1e6, 200)), _here(finger))
+def _peak_high(case: Case) -> Row:
+    high = _share(tuple(np.geomspace(1e4, 1e6, 200)), _here(case.finger))
     second = bool(np.any((high[1:-1] > high[:-2]) & (high[1:-1] > high[2:])))
     return {"first": float(high[0]), "last": float(high[-1])}, by_share(float(second))
 
@@ -108,22 +106,22 @@ def _ratio(f: float, at: Layers) -> float:
     return square.relative_to(sine)
 
 
-def _square_below(row: Finding, finger: Finger) -> Row:
+def _square_below(case: Case) -> Row:
     f = np.geomspace(BELOW[0], ABOVE[0], 61)
-    crossings = [float(np.interp(1.0, [_ratio(x, at) for x in f], f)) for at in _all(finger)]
-    below = [_ratio(x, at) for at in _all(finger) for x in BELOW]
+    crossings = [float(np.interp(1.0, [_ratio(x, at) for x in f], f)) for at in _all(case.finger)]
+    below = [_ratio(x, at) for at in _all(case.finger) for x in BELOW]
     numbers = {"low": min(crossings), "high": max(crossings), "least": min(below), "most": max(below)}
-    return numbers, rules.by_rule(row, numbers["low"], numbers["high"])
+    return numbers, rules.by_rule(case.row, numbers["low"], numbers["high"])
 
 
-def _square_above(finger: Finger) -> Row:
-    above = np.array([_ratio(x, at) for at in _all(finger) for x in ABOVE])
+def _square_above(case: Case) -> Row:
+    above = np.array([_ratio(x, at) for at in _all(case.finger) for x in ABOVE])
     return {"low": above.min(), "high": above.max()}, by_share(float(np.mean(np.abs(above - 1) <= SIMILAR)))
 
 
-def _shape(finger: Finger) -> Row:
+def _shape(case: Case) -> Row:
     """Judge whether thresholds over the frequency have a least one inside, for a sine and for a square."""
-    at, holds, numbers = _here(finger), [], {}
+    at, holds, numbers = _here(case.finger), [], {}
     for wave in ("sine", "square"):
         levels = [of_wave(circuit(at), wave, f, at) for f in SHAPE]
         found = np.array([level.relative_to(levels[0]) for level in levels])
@@ -138,15 +136,15 @@ def _shape(finger: Finger) -> Row:
     return numbers, by_share(sum(holds) / 2)
 
 
-def _moist(finger: Finger, all_: Mapping[str, Finger]) -> Row:
+def _moist(case: Case) -> Row:
     """Judge whether moist skin needs a higher voltage, with the one constant; with its own leak it stands beside."""
-    at, dry = (*BELOW, 60.0, *ABOVE), _here(all_["fitted"])
+    at, dry = (*BELOW, 60.0, *ABOVE), _here(case.every["fitted"])
 
     def ratios(moist: GapCircuit) -> rules.Array:
         both = [[of_wave(c, "sine", f, dry) for f in at] for c in (moist, circuit(dry))]
         return np.array([wet.relative_to(other) for wet, other in zip(*both, strict=True)])
 
-    same, own = ratios(circuit(dry, "moist")), ratios(finger.scene.electric.circuit(dry[3]))
+    same, own = ratios(circuit(dry, "moist")), ratios(case.finger.scene.electric.circuit(dry[3]))
     numbers = {"low": same.min(), "high": same.max(), "own_low": own.min(), "own_high": own.max()}
     return numbers, by_share(float((same > 1).mean()))
 
@@ -175,33 +173,32 @@ def sliding(row: Finding, held: Finger, rest: Any, slides: Finger, slip: Any) ->
     return {"low": low, "high": high}, rules.by_rule(row, low, high)
 
 
-def _constant(finger: Finger) -> Row:
+def _constant(case: Case) -> Row:
     """Judge whether an alternating voltage attracts where a constant one no longer does."""
-    at = _here(finger)
+    at = _here(case.finger)
     return {"ac": float(_share(PEAK, at))}, by_share(float(abs(circuit(at).gain(0.0, *at)) == 0))
 
 
-def _skin(row: Finding, finger: Finger) -> Row:
+def _skin(case: Case) -> Row:
     """Judge the impedance of the stratum corneum, over the frequency or by its phase at 1 kHz."""
-    skin = circuit(_here(finger)).dielectric
+    skin = circuit(_here(case.finger)).dielectric
     z = 1 / np.array([complex(skin.conductivity(f)) for f in (1.0, 1e3)])
     ratio, phase = float(abs(z[0]) / abs(z[1])), float(np.angle(z[1], deg=True))
-    value = ratio if row.unit == "" else phase
-    return {"value": value, "phase_1": float(np.angle(z[0], deg=True))}, rules.by_rule(row, value, value)
+    value = ratio if case.row.unit == "" else phase
+    return {"value": value, "phase_1": float(np.angle(z[0], deg=True))}, rules.by_rule(case.row, value, value)
 
 
-ROWS = {
-    "frequency": lambda row, finger, all_: _small(finger),
-    "frequency_wide": lambda row, finger, all_: _wide(finger),
-    "cut_off": lambda row, finger, all_: _cut_off(finger),
-    "peak": lambda row, finger, all_: _peak(finger),
-    "peak_high": lambda row, finger, all_: _peak_high(finger),
-    "skin_impedance": lambda row, finger, all_: _skin(row, finger),
-    "skin_phase": lambda row, finger, all_: _skin(row, finger),
-    "square_below": lambda row, finger, all_: _square_below(row, finger),
-    "square_above": lambda row, finger, all_: _square_above(finger),
-    "threshold_shape": lambda row, finger, all_: _shape(finger),
-    "direct": lambda row, finger, all_: _constant(finger),
-    "moist": lambda row, finger, all_: _moist(finger, all_),
+ROWS: dict[str, Computation] = {
+    "frequency": _small,
+    "frequency_wide": _wide,
+    "cut_off": _cut_off,
+    "peak": _peak,
+    "peak_high": _peak_high,
+    **dict.fromkeys(("skin_impedance", "skin_phase"), _skin),
+    "square_below": _square_below,
+    "square_above": _square_above,
+    "threshold_shape": _shape,
+    "direct": _constant,
+    "moist": _moist,
 }
 """Computations of findings by name."""

@@ -4,8 +4,8 @@ Viscous or elastic skin under a voltage that rises and falls in sliding, the ons
 the small finger of the demos. Each function of :data:`ROWS` has the numbers and the verdict of a finding.
 """
 
+import argparse
 from collections.abc import Callable, Mapping
-from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -16,9 +16,10 @@ from numpy.typing import NDArray
 from scipy.stats import spearmanr
 
 import fingerpad as fp
+from benchmarks import harness
 from benchmarks.measured.fingers import SOFT
 from benchmarks.measured.rules import by_bar, by_share
-from benchmarks.runs import Run, Unfinished
+from benchmarks.runs import Run
 from fingerpad.afferents import threshold
 from fingerpad.results import fields
 from fingerpad.results.over_time import without_parts_of_jumps
@@ -39,6 +40,7 @@ RISE, FALL, STEP, LAST = 0.02, 0.07, 0.01, 0.12  # s: when a voltage rises and f
 RELAXED, SLOW = 5.0, 2e-3  # s, m/s: viscous skin relaxes held, and in a slow slide, before the voltage rises
 SKINS = {"viscous": "fingerpad", "elastic": None}  # preset of the soft layers
 PERIODS, GRATING_LOADS, GRATING_SPEED = (1.0e-3, 2.5e-3), (4.0, 10.0), 50e-3  # m, N/m, m/s
+_LIMIT = 1500.0  # s of processor time for one run
 _KEPT = 1.5e-3  # m, of the response under a line load that is drawn
 SMALL = Path(__file__).parents[2] / "demos" / "scenes" / "small_finger.toml"
 _GRATINGS = 3  # periods of a grating that are passed
@@ -115,7 +117,7 @@ def charged(volts: float, friction: float) -> Scene:
 
 
 def scenes() -> dict[str, Scene]:
-    """Return all scenes by name, but the second of ``same_energy``, which needs the friction of the first."""
+    """Return all scenes by name, but one of ``same_energy``, which needs the friction of another."""
     found = {"onset": onset(), "charged": charged(VOLTS, 0.25)}
     for f in LOADS:
         found |= {f"{skin} {f:g}": step(f, preset) for skin, preset in SKINS.items()}
@@ -124,11 +126,6 @@ def scenes() -> dict[str, Scene]:
 
 def _grating(f_ext: float, period: float) -> str:
     return f"grating {f_ext:g} {1e3 * period:g}"
-
-
-def equal(result: fp.Result) -> Scene:
-    """Return the scene without voltage whose friction is that of another one's end."""
-    return charged(0.0, result.steps[-1].mu_app)
 
 
 def _span(spikes: Spikes, load: str) -> tuple[float, float]:
@@ -259,33 +256,26 @@ def of_grating(result: fp.Result) -> dict[str, float]:
     return {"f_t": seconds.mean["f_t"], "rate": float(change / seconds.seconds), "RA1": count / seconds.seconds}
 
 
-class Kept(dict[str, Any]):
-    """What there is by name; the rest is Unfinished where it is asked for."""
-
-    def __missing__(self, name: str) -> Any:
-        raise Unfinished(f"the run of {name} did not reach its end")
-
-
-def numbers(out: Path) -> Numbers:
-    """Return the numbers of all findings, of those runs that a folder has."""
-    runs, found = Kept(), Kept(thresholds=gains(), subfield=line())
-    for name, scene in scenes().items():
-        with suppress(Unfinished):
-            runs[name] = Run(scene, out).result
-    with suppress(Unfinished):
-        runs["same"] = Run(equal(runs["charged"]), out).result
-    parts: dict[str, Callable[[], Any]] = {
-        "onset": lambda: at_onset(runs["onset"]),
-        "hold": lambda: in_hold(runs["onset"]),
-        "shear": lambda: shear(runs["onset"]),
-        "same": lambda: differing(runs["charged"], runs["same"]),
-        "gratings": lambda: {(f, p): of_grating(runs[_grating(f, p)]) for f in GRATING_LOADS for p in PERIODS},
-        **{skin: lambda skin=skin: {f"{f:g}": of_step(runs[f"{skin} {f:g}"]) for f in LOADS} for skin in SKINS},
+def compute(args: argparse.Namespace) -> None:
+    """Run what is missing and keep the numbers of all findings in docs/felt.json."""
+    wanted = scenes()
+    summaries = harness.run(wanted, args, _LIMIT)
+    runs = {name: Run(scene, args.out).result for name, scene in wanted.items()}
+    same = charged(0.0, runs["charged"].steps[-1].mu_app)
+    summaries |= harness.run({"same": same}, args, _LIMIT)
+    numbers = {
+        "thresholds": gains(),
+        "subfield": line(),
+        "onset": at_onset(runs["onset"]),
+        "hold": in_hold(runs["onset"]),
+        "shear": shear(runs["onset"]),
+        "same": differing(runs["charged"], Run(same, args.out).result),
+        "gratings": [
+            {"load": f, "period": p, **of_grating(runs[_grating(f, p)])} for f in GRATING_LOADS for p in PERIODS
+        ],
+        **{skin: {f"{f:g}": of_step(runs[f"{skin} {f:g}"]) for f in LOADS} for skin in SKINS},
     }
-    for name, part in parts.items():
-        with suppress(Unfinished):
-            found[name] = part()
-    return found
+    harness.keep("felt", numbers, harness.made(summaries.values()), args.docs)
 
 
 # -- findings --------------------------------------------------------------------------------------------------
@@ -303,9 +293,9 @@ def _numbered(ratios: Mapping[str, float], name: str = "at") -> dict[str, float]
 
 
 def _rise_felt(numbers: Numbers) -> Row:
-    rise, fall = (numbers["viscous"][f"{LOAD:g}"][change]["RA1"] for change in ("rise", "fall"))
-    elastic = {f"elastic_{change}": each["RA1"] for change, each in numbers["elastic"][f"{LOAD:g}"].items()}
-    return {"rise": rise, "fall": fall} | elastic, _by(rise > MORE * fall)
+    rise, fall, *elastic = (numbers[skin][f"{LOAD:g}"][change]["RA1"] for skin in SKINS for change in ("rise", "fall"))
+    found = {"rise": rise, "fall": fall, "elastic_rise": elastic[0], "elastic_fall": elastic[1]}
+    return found, _by(rise > MORE * fall)
 
 
 def _rise_friction(numbers: Numbers) -> Row:
@@ -328,7 +318,7 @@ def _rise_low_load(numbers: Numbers) -> Row:
 
 
 def _gratings(numbers: Numbers, key: str) -> dict[tuple[float, float], float]:
-    return {place: found[key] for place, found in numbers["gratings"].items()}
+    return {(found["load"], found["period"]): found[key] for found in numbers["gratings"]}
 
 
 def _gratings_period(numbers: Numbers) -> Row:

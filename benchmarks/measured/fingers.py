@@ -5,16 +5,17 @@ It is also pressed under voltage and, where rows ask for it, softened, held and 
 slices.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.measured.findings import Finding
 from benchmarks.runs import Run, Unfinished, plain
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.fingers import ADULT, FINGERS
@@ -40,8 +41,8 @@ _LEAST = 3  # forces of which a finger's rows are made
 
 
 def preset(name: str) -> str:
-    """Return the finger of a finding's name, or the nearest one that there is."""
-    return name if name in FINGERS else ADULT
+    """Return the finger of a finding's name; the default one while there are no fitted ones."""
+    return name if {name, "fitted"} <= FINGERS.keys() else ADULT
 
 
 def _history(force: float, timed: bool) -> list[dict[str, Any]]:
@@ -169,6 +170,19 @@ class Finger:
         if force not in totals:
             raise Unfinished(f"the traces end below {force:g} N")
         return float(totals[force].values[name])
+
+
+class Case(NamedTuple):
+    """A finding with the finger that it names, and all fingers."""
+
+    row: Finding
+    finger: Finger
+    every: Mapping[str, Finger]
+
+
+Row = tuple[dict[str, float], str]
+"""Numbers of a finding by name, and its verdict."""
+Computation = Callable[[Case], Row]
 
 
 def fingers(names: Iterable[str], out: Path) -> dict[str, Finger]:

@@ -5,7 +5,7 @@ slices. The real area is the contact length or area of the ridges, and over the 
 stated error is the difference of two meshes.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any
 
@@ -13,104 +13,78 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.measured import drives, rules
-from benchmarks.measured.findings import Finding
-from benchmarks.measured.fingers import FORCE, GROWS, HIGH, ROUGHER, SOFTER, VOLTAGES, Finger
-from benchmarks.measured.rules import (
-    CHANGED,
-    EXPONENT,
-    RATIO,
-    SIMILAR,
-    STRIKING,
-    by_factor,
-    by_form,
-    by_share,
-)
+from benchmarks.measured.fingers import FORCE, GROWS, HIGH, ROUGHER, SOFTER, VOLTAGES, Case, Computation, Finger, Row
+from benchmarks.measured.rules import CHANGED, EXPONENT, RATIO, SIMILAR, STRIKING, by_factor, by_form, by_share
 from variational.attraction.dielectric import VACUUM_PERMITTIVITY
 from variational.state import ContactState
 
 Array = NDArray[np.float64]
-Row = tuple[dict[str, float], str]
-"""Numbers of a row by name, and its verdict."""
-Fingers = Mapping[str, Finger]
-Computation = Callable[[Finding, Finger, Fingers], Row]
-"""Of a finding, the finger that it names, and all fingers."""
 AMPLITUDES = ((100.0, 150.0), (50.0, 100.0))
 """Voltages (V) within an amplitude of 75 to 150 V: as a constant voltage, and as that of a sine's mean square."""
-_LOW, _ONE, _SHARE = 0.5, 1.0, 0.5  # N: least force of several sources, that of fitted numbers, that of shares
+_LOW, _ONE = 0.5, 1.0  # N: least force of several sources, where shares are compared, and force of fitted numbers
 _GROWN = 0.95  # of the growth in the time of the hold
 
 
-def _both(finger: Finger, value: Callable[[Finger], Any]) -> tuple[Array, float]:
+def _both(finger: Finger, value: Callable[[Finger], Any]) -> tuple[Any, float]:
     """Return a number or an array of a finger, and its largest difference from that of the coarser mesh."""
     fine, coarse = np.asarray(value(finger), dtype=float), np.asarray(value(finger.coarse), dtype=float)
-    count = min(fine.size, coarse.size) if fine.ndim == 1 else None
-    return fine, float(np.abs(fine[:count] - coarse[:count]).max() if count else np.abs(fine - coarse).max())
+    if fine.shape != coarse.shape:  # forces (N) that the traces of one mesh alone reach
+        fine, coarse = (each[: min(len(fine), len(coarse))] for each in (fine, coarse))
+    return fine, float(np.abs(fine - coarse).max())
 
 
-def _value(row: Finding, finger: Finger, value: Callable[[Finger], float]) -> Row:
-    """Judge a number by the rule of its row."""
-    found, error = _both(finger, value)
-    return {"value": float(found), "error": error}, rules.by_rule(row, float(found), float(found))
-
-
-def _range(row: Finding, finger: Finger, values: Callable[[Finger], Array]) -> Row:
-    """Judge numbers at several forces by the rule of their row."""
-    found, error = _both(finger, values)
+def _value(case: Case, value: Callable[[Finger], Any]) -> Row:
+    """Judge a number, or the range of several, by the rule of its row."""
+    found, error = _both(case.finger, value)
     low, high = float(found.min()), float(found.max())
-    return {"low": low, "high": high, "error": error}, rules.by_rule(row, low, high)
+    return {"value": low, "low": low, "high": high, "error": error}, rules.by_rule(case.row, low, high)
 
 
-def _holds(finger: Finger, values: Callable[[Finger], Array], holds: Callable[[Array], NDArray[np.bool_]]) -> Row:
+def _near(case: Case, value: Callable[[Finger], Any]) -> Row:
+    """Judge a number by its distance from the measured one: 0.1 for a hit, 0.2 for a part."""
+    found, error = _both(case.finger, value)
+    measured = 0.0 if isinstance(case.row.value, str) else case.row.bounds[0]
+    return {"value": float(found), "error": error}, rules.by_bar(abs(float(found) - measured), 0.1, 0.2)
+
+
+def _holds(case: Case, values: Callable[[Finger], Array], holds: Callable[[Array], NDArray[np.bool_]]) -> Row:
     """Judge at how many forces a statement on numbers holds."""
-    found, error = _both(finger, values)
+    found, error = _both(case.finger, values)
     where = holds(found)
     numbers = {"low": found.min(), "high": found.max(), "error": error, "holds": where.sum(), "loads": where.size}
     return numbers, by_share(float(where.mean()))
 
 
 # -- contact area ----------------------------------------------------------------------------------------------
-def _share(finger: Finger, force: float = _SHARE) -> float:
-    areas = (finger.at(finger.pressed, name, force) for name in ("contact_area", "gross_area"))
-    return next(areas) / next(areas)
+def _share(finger: Finger) -> float:
+    area, gross = (finger.at(finger.pressed, name, _LOW) for name in ("contact_area", "gross_area"))
+    return area / gross
 
 
-def _one_newton(name: str, scale: float, finger: Finger) -> float:
+def _one_newton(finger: Finger, name: str, scale: float) -> float:
     return scale * finger.at(finger.pressed, name, _ONE)
 
 
-def _area_form(least: float, form: rules.Form, other: rules.Form, finger: Finger) -> Row:
+def _area_form(case: Case, least: float, form: rules.Form, other: rules.Form) -> Row:
     """Judge a form of the gross area over the force from a least one (N) on, beside another one."""
-    force, area = finger.sums(finger.pressed, "gross_area")
+    force, area = case.finger.sums(case.finger.pressed, "gross_area")
     at = force >= least
-    fits = [rules.of_each(each, force[at], area[at]).misfit for each in (form, other)]
-    exponent, error = _both(finger, lambda of: np.polyfit(*np.log(of.sums(of.pressed, "gross_area")), 1)[0])
-    numbers = {"misfit": fits[0], "other": fits[1], "exponent": float(exponent), "error": error, "most": force[-1]}
-    return numbers, by_form(fits[:1], fits[1:])
+    misfit, beside = (rules.of_each(each, force[at], area[at]).misfit for each in (form, other))
+    exponent, error = _both(case.finger, lambda of: np.polyfit(*np.log(of.sums(of.pressed, "gross_area")), 1)[0])
+    numbers = {"misfit": misfit, "other": beside, "exponent": float(exponent), "error": error, "most": force[-1]}
+    return numbers, by_form((misfit,), (beside,))
 
 
-def _area_load(finger: Finger) -> Row:
-    areas = [np.diff(np.log(finger.sums(finger.pressed, name)[1])) for name in ("gross_area", "contact_area")]
-    grows = (areas[0] > 0) & (areas[1] > 0)
-    return {"holds": grows.sum(), "loads": grows.size}, by_share(float(grows.mean()))
+def _grow(finger: Finger) -> Array:
+    """Return the least rise of gross and real area from force to force."""
+    return np.min([np.diff(np.log(finger.sums(finger.pressed, f"{name}_area")[1])) for name in ("gross", "contact")], 0)
 
 
-def _apparent(after: Callable[[Finger], list[ContactState]], before: Any, finger: Finger) -> Array:
-    """Return the relative change of the gross area from states to others, at each force (N)."""
-    areas = [finger.sums(states(finger), "gross_area")[1] for states in (after, before)]
+def _apparent(finger: Finger, after: tuple[str, float], before: tuple[str, float]) -> Array:
+    """Return the relative change of the gross area from a state and voltage to another, at each force (N)."""
+    areas = [finger.sums(getattr(finger, state)(voltage), "gross_area")[1] for state, voltage in (after, before)]
     count = min(map(len, areas))
     return np.asarray(areas[0][:count] / areas[1][:count] - 1)
-
-
-def _rest(voltage: float) -> Callable[[Finger], list[ContactState]]:
-    return lambda finger: finger.rest(voltage)
-
-
-def _slip(voltage: float) -> Callable[[Finger], list[ContactState]]:
-    return lambda finger: finger.slip(voltage)
-
-
-def _same(change: Array) -> NDArray[np.bool_]:
-    return np.abs(change) < CHANGED
 
 
 def _falls(change: Array) -> NDArray[np.bool_]:
@@ -119,8 +93,8 @@ def _falls(change: Array) -> NDArray[np.bool_]:
 
 def _length(finger: Finger) -> Array:
     """Return the relative change of the contact length from rest to full slip, at each force."""
-    ends = [np.array([s.contact_length for s in states]) for states in (finger.slip(), finger.rest())]
-    return np.asarray(ends[0] / ends[1] - 1)
+    after, before = (np.array([s.contact_length for s in states]) for states in (finger.slip(), finger.rest()))
+    return np.asarray(after / before - 1)
 
 
 def _stuck(finger: Finger, force: float) -> tuple[Array, Array]:
@@ -130,48 +104,51 @@ def _stuck(finger: Finger, force: float) -> tuple[Array, Array]:
     return np.array([s.f_t for s in path]), np.array([1 - s.slipping for s in path])
 
 
-def _linear(finger: Finger) -> Row:
-    """Judge how far the stuck share is from a straight line over the tangential force."""
-
-    def off(of: Finger) -> float:
-        force, stuck = _stuck(of, FORCE)
-        part = np.linspace(0, 1, 101)
-        return float(np.sqrt(np.mean((np.interp(part, force / force[-1], stuck) - (1 - part)) ** 2)))
-
-    found, error = _both(finger, off)
-    return {"value": float(found), "error": error}, rules.by_bar(float(found), 0.1, 0.2)
+def _off_line(finger: Finger) -> float:
+    """Return how far the stuck share is from a straight line over the tangential force (rms)."""
+    force, stuck = _stuck(finger, FORCE)
+    part = np.linspace(0, 1, 101)
+    return float(np.sqrt(np.mean((np.interp(part, force / force[-1], stuck) - (1 - part)) ** 2)))
 
 
 def _half_stuck(finger: Finger) -> Array:
-    """Return the tangential force (N/m) at which half of the contact sticks, at each force."""
+    """Return the tangential force (N/m) at which a quarter of the contact sticks, at each force."""
     found = [_stuck(finger, force) for force in finger.forces]
-    return np.array([np.interp(-0.5, -stuck, f_t) for f_t, stuck in found])
+    return np.array([np.interp(-_STUCK, -stuck, f_t) for f_t, stuck in found])
 
 
-def _stuck_wet(finger: Finger, all_: Fingers) -> Row:
+def _slopes(finger: Finger, values: Array) -> Array:
+    """Return the exponent of values over the force, between neighbouring forces."""
+    return np.diff(np.log(values)) / np.diff(np.log(finger.forces))
+
+
+def _stuck_wet(case: Case) -> Row:
     def ratio(wet: Finger, dry: Finger) -> Array:
-        pairs = [dict(zip(each.forces, _half_stuck(each), strict=True)) for each in (wet, dry)]
-        return np.array([pairs[0][f] / pairs[1][f] for f in pairs[0] if f in pairs[1]])
+        wets, dries = (dict(zip(each.forces, _half_stuck(each), strict=True)) for each in (wet, dry))
+        return np.array([wets[f] / dries[f] for f in wets if f in dries])
 
-    dry = all_["fitted"]
-    found, error = ratio(finger, dry), float(np.abs(ratio(finger, dry) - ratio(finger.coarse, dry.coarse)).max())
-    numbers = {"low": found.min(), "high": found.max(), "error": error}
-    return numbers, by_share(float((found > 1 + SIMILAR).mean()))
+    found, error = _of_two(case, "fitted", ratio)
+    return {"low": found.min(), "high": found.max(), "error": error}, by_share(float((found > 1 + SIMILAR).mean()))
+
+
+def _of_two(case: Case, other: str, value: Callable[[Finger, Finger], Any]) -> tuple[Any, float]:
+    """Return what follows from two fingers, and its difference from that of the coarser meshes."""
+    both = case.finger, case.every[other]
+    found, coarse = np.asarray(value(*both)), np.asarray(value(*(each.coarse for each in both)))
+    return found, float(np.abs(found - coarse).max())
 
 
 # -- pressing --------------------------------------------------------------------------------------------------
-def _force_depth(finger: Finger) -> Row:
+def _force_depth(case: Case) -> Row:
     """Judge an exponential beside a power law, by the misfit of each force and by that of the largest."""
-    force, depth = finger.sums(finger.pressed, "indentation")
-    fits = [
-        [fit(form, depth, force).misfit for fit in (rules.of_each, rules.of_largest)]
-        for form in (rules.exponential, rules.power)
-    ]
+    force, depth = case.finger.sums(case.finger.pressed, "indentation")
+    kinds, forms = (rules.of_each, rules.of_largest), (rules.exponential, rules.power)
+    own, other = ([fit(form, depth, force).misfit for fit in kinds] for form in forms)
     names = ("each", "largest", "other_each", "other_largest")
-    return dict(zip(names, [*fits[0], *fits[1]], strict=True)) | {"most": force[-1]}, by_form(*fits)
+    return dict(zip(names, [*own, *other], strict=True)) | {"most": force[-1]}, by_form(own, other)
 
 
-def _pressure(finger: Finger) -> Row:
+def _pressure(case: Case) -> Row:
     """Judge a paraboloid beside half an ellipse, over the largest pressure of a ridge."""
 
     def misfits(of: Finger) -> list[float]:
@@ -181,137 +158,108 @@ def _pressure(finger: Finger) -> Row:
         points = ridges.number[touch].astype(float), ridges.f_contact[touch]
         return [rules.of_largest(form, *points).misfit for form in (rules.paraboloid, rules.ellipse)]
 
-    (misfit, other), error = _both(finger, misfits)
+    (misfit, other), error = _both(case.finger, misfits)
     return {"misfit": misfit, "other": other, "error": error}, by_form((misfit,), (other,))
 
 
-def _pressed(kind: str, finger: Finger) -> tuple[float, float]:
-    """Return contact length and gross width (m) of a pressed finger."""
-    state = finger.path(kind, "press")[-1]
-    width = (state.ridges_in_contact - 1) * finger.scene.geometry.ridge_wavelength
-    return state.contact_length, width + state.contact_length / state.ridges_in_contact
+def _change(finger: Finger, kind: str) -> Array:
+    """Return the relative changes of contact length and gross width by other skin or friction."""
+
+    def pressed(kind: str) -> Array:
+        state = finger.path(kind, "press")[-1]
+        width = (state.ridges_in_contact - 1) * finger.scene.geometry.ridge_wavelength
+        return np.array([state.contact_length, width + state.contact_length / state.ridges_in_contact])
+
+    return pressed(kind) / pressed(f"slide {FORCE:g}") - 1
 
 
-def _changes(kind: str, finger: Finger) -> tuple[Array, float]:
-    """Return the relative changes of both by other skin or friction, and the error of the first."""
-
-    def change(of: Finger) -> Array:
-        return np.array(_pressed(kind, of)) / np.array(_pressed(f"slide {FORCE:g}", of)) - 1
-
-    return change(finger), float(np.abs(change(finger) - change(finger.coarse))[0])
-
-
-def _softer(finger: Finger) -> Row:
+def _softer(case: Case) -> Row:
     """Judge either area at each softening of the stratum corneum."""
-    (less, less_error), (more, error) = (_changes(f"soft {each:g}", finger) for each in SOFTER)
-    holds = [less[0] >= STRIKING, more[0] >= STRIKING, abs(less[1]) <= SIMILAR, abs(more[1]) <= SIMILAR]
-    numbers = {"less": less[0], "less_error": less_error, "more": more[0], "error": error}
-    return numbers | {"gross": max(less[1], more[1])}, by_share(sum(holds) / len(holds))
+    less, more = (_both(case.finger, partial(_change, kind=f"soft {each:g}")) for each in SOFTER)
+    areas, gross = [less[0][0], more[0][0]], max(less[0][1], more[0][1])
+    numbers = {"less": areas[0], "less_error": less[1], "more": areas[1], "error": more[1], "gross": gross}
+    return numbers, by_share(float(np.mean([*(each >= STRIKING for each in areas), *[gross <= SIMILAR] * 2])))
 
 
-def _modulus(finger: Finger) -> Row:
-    (soft, error), (rough, _) = (_changes(kind, finger) for kind in (f"soft {SOFTER[-1]:g}", "rough"))
-    return {"soft": soft[0], "rough": rough[0], "error": error, "friction": ROUGHER}, by_share(
-        float(abs(soft[0]) > abs(rough[0]))
+def _modulus(case: Case) -> Row:
+    (soft, error), (rough, _) = (
+        _both(case.finger, partial(_change, kind=kind)) for kind in (f"soft {SOFTER[-1]:g}", "rough")
     )
+    numbers = {"soft": soft[0], "rough": rough[0], "error": error, "friction": ROUGHER}
+    return numbers, by_share(float(abs(soft[0]) > abs(rough[0])))
 
 
-def _time(finger: Finger) -> Row:
+def _time(case: Case) -> Row:
     """Judge for how long the contact of a held finger grows."""
-    states = [finger.path("hold", "press")[-1], *finger.path("hold", "hold")]
+    states = [case.finger.path("hold", "press")[-1], *case.finger.path("hold", "hold")]
     time, length = (np.array([getattr(s, key) for s in states]) for key in ("time", "contact_length"))
     time, growth = np.nan_to_num(time - np.nanmin(time)), float(length[-1] / length[0] - 1)
-    if growth < SIMILAR:
-        return {"growth": growth, "until": 0.0, "seconds": GROWS}, rules.MISS
-    grown = np.maximum.accumulate((length - length[0]) / (length[-1] - length[0]))
-    until = float(np.interp(_GROWN, grown, time))
+    grown = np.maximum.accumulate((length - length[0]) / (length[-1] - length[0])) if growth > SIMILAR else length * 0
+    until = float(np.interp(_GROWN, grown, time)) if growth > SIMILAR else 1e-9
     return {"growth": growth, "until": until, "seconds": GROWS}, by_factor(until, until, GROWS, GROWS, RATIO)
 
 
 # -- friction --------------------------------------------------------------------------------------------------
-def _mu(force: float, finger: Finger) -> float:
-    """Return the friction coefficient of the whole finger without voltage, at a force (N)."""
-    return finger.at(finger.slip(), "mu_app", force)
+def _mu(finger: Finger) -> float:
+    """Return the friction coefficient of the whole finger without voltage under 1 N."""
+    return finger.at(finger.slip(), "mu_app", _ONE)
 
 
-def _mus(finger: Finger) -> Array:
-    """Return it at the forces of several sources (N)."""
+def _mus(finger: Finger) -> tuple[Array, Array]:
+    """Return forces (N) of several sources and the friction coefficient at each."""
     force, mu = finger.sums(finger.slip(), "mu_app")
-    return mu[force >= _LOW]
+    return force[force >= _LOW], mu[force >= _LOW]
 
 
 def _exponent(finger: Finger) -> float:
-    force, mu = finger.sums(finger.slip(), "mu_app")
-    at = force >= _LOW
-    return float(np.polyfit(np.log(force[at]), np.log(mu[at]), 1)[0])
+    return float(np.polyfit(*np.log(_mus(finger)), 1)[0])
 
 
-def _friction_seo(row: Finding, finger: Finger) -> Row:
-    found, error = _both(finger, _exponent)
-    off = abs(float(found) - row.bounds[0])
-    return {"value": float(found), "error": error}, rules.by_bar(off, 0.1, 0.2)
-
-
-def _over_load(judge: Callable[[Array], str], finger: Finger) -> Row:
+def _over_load(case: Case, judge: Callable[[Case, Array], str]) -> Row:
     """Judge the friction coefficients at all forces per length."""
-    mu, error = _both(finger, lambda of: of.mu)
+    mu, error = _both(case.finger, lambda of: of.mu)
     numbers = {"factor": mu.max() / mu.min(), "first": mu[0], "last": mu[-1], "error": error}
-    return numbers | {"least": finger.forces[0], "most": finger.forces[-1]}, judge(mu)
+    return numbers | {"least": case.finger.forces[0], "most": case.finger.forces[-1]}, judge(case, mu)
 
 
-def _depends(mu: Array) -> float:
-    return float(mu.max() / mu.min() - 1)
+def _factor(mu: Array) -> float:
+    return float(mu.max() / mu.min())
 
 
-def _power_law(finger: Finger) -> Row:
+def _power_law(case: Case) -> Row:
     """Judge whether friction depends on the load, and by a power law."""
-    mu, force = finger.mu, np.array(finger.forces)
+    mu, force = case.finger.mu, np.array(case.finger.forces)
     misfit, line = (rules.of_each(form, force, mu).misfit for form in (rules.falling_power, rules.falling_line))
-    verdict = by_form((misfit,), (line,)) if _depends(mu) > SIMILAR else rules.MISS
-    numbers = {"misfit": misfit, "line": line, "factor": mu.max() / mu.min()}
-    return numbers | {"exponent": float(np.polyfit(np.log(force), np.log(mu), 1)[0])}, verdict
+    verdict = by_form((misfit,), (line,)) if _factor(mu) > 1 + SIMILAR else rules.MISS
+    exponent = float(np.polyfit(np.log(force), np.log(mu), 1)[0])
+    return {"misfit": misfit, "line": line, "factor": _factor(mu), "exponent": exponent}, verdict
 
 
-def _speed(wanted: bool, finger: Finger) -> Row:
+def _speed(case: Case, wanted: bool) -> Row:
     """Judge whether friction depends on the speed: laws with a speed do, and no others."""
-    law = finger.scene.friction_law()
-    return {}, by_share(float(hasattr(law, "v_0") == wanted))
+    return {}, by_share(float(hasattr(case.finger.scene.friction_law(), "v_0") == wanted))
 
 
-def _ratio(other: str, row: Finding, finger: Finger, all_: Fingers) -> Row:
-    """Judge the friction coefficient over that of another finger, at 1 N."""
-    found, coarse = (_mu(_ONE, each) / _mu(_ONE, dry) for each, dry in _meshes(finger, all_[other]))
-    return {"value": found, "error": abs(found - coarse)}, rules.by_rule(row, found, found)
+def _ratio(case: Case) -> Row:
+    """Judge the friction coefficient over that of a dry finger, at 1 N."""
+    found, error = _of_two(case, "fitted", lambda finger, dry: _mu(finger) / _mu(dry))
+    return {"value": float(found), "error": error}, rules.by_rule(case.row, float(found), float(found))
 
 
-def _meshes(*fingers: Finger) -> Sequence[Sequence[Finger]]:
-    return [fingers, [each.coarse for each in fingers]]
-
-
-def _stiffness(finger: Finger) -> Row:
-    """Judge the exponent of the tangential stiffness over the load, between neighbouring forces."""
-
-    def exponents(of: Finger) -> Array:
-        stiffness = []
-        for force in of.forces:
-            before, first = of.path(f"slide {force:g}", "press")[-1], of.path(f"slide {force:g}", "slip 0")[0]
-            stiffness.append(first.f_t / (first.bone_x - before.bone_x))
-        return np.diff(np.log(stiffness)) / np.diff(np.log(of.forces))
-
-    return _holds(finger, exponents, lambda found: np.abs(found - 1) <= EXPONENT)
+def _stiffness(finger: Finger) -> Array:
+    """Return the exponent of the tangential stiffness over the load, between neighbouring forces."""
+    firsts = [[finger.path(f"slide {f:g}", "press")[-1], finger.path(f"slide {f:g}", "slip 0")[0]] for f in finger.forces]
+    return _slopes(finger, np.array([(two.f_t - one.f_t) / (two.bone_x - one.bone_x) for one, two in firsts]))
 
 
 def _way(finger: Finger) -> Array:
-    """Return the ways (m) of sliding after which 63 % of a rise by voltage is there, at each force."""
+    """Return the ways (µm) of sliding after which 63 % of a rise by voltage is there, at each force."""
     found = []
     for force in finger.forces:
-        before, *path = [
-            finger.path(f"slide {force:g}", "charge")[-1],
-            *finger.path(f"slide {force:g}", f"slip {HIGH:g}"),
-        ]
-        rise = np.array([s.f_t for s in (before, *path)]) - before.f_t
-        way = np.array([s.bone_x for s in (before, *path)]) - before.bone_x
-        found.append(float(np.interp(1 - np.exp(-1), np.maximum.accumulate(rise / rise[-1]), way)))
+        kind = f"slide {force:g}"
+        path = [finger.path(kind, "charge")[-1], *finger.path(kind, f"slip {HIGH:g}")]
+        rise, way = (np.array([getattr(s, key) - getattr(path[0], key) for s in path]) for key in ("f_t", "bone_x"))
+        found.append(np.interp(1 - np.exp(-1), np.maximum.accumulate(rise / rise[-1]), way))
     return 1e6 * np.array(found)
 
 
@@ -323,13 +271,12 @@ def exponents(values: Array, voltages: Sequence[float]) -> Array:
     return np.polyfit(np.log(voltages), np.log(np.maximum(rise, 1e-15)).T, 1)[0]
 
 
-def _power(values: Callable[[Finger], Array], ranges: Sequence[Sequence[float]], finger: Finger) -> Row:
+def _power(case: Case, values: Callable[[Finger], Array], ranges: Sequence[Sequence[float]]) -> Row:
     """Judge whether a rise is as the square of the voltage, at each force and in each of the ranges (V)."""
-    found, error = _both(finger, lambda of: np.array([exponents(values(of), voltages) for voltages in ranges]))
-    near = (np.abs(found - 2) <= EXPONENT).all(axis=0)
-    numbers = {"holds": near.sum(), "loads": near.size, "error": error}
-    numbers |= {"low": found[0].min(), "high": found[0].max(), "other_low": found[-1].min()}
-    return numbers | {"other_high": found[-1].max()}, by_share(float(near.mean()))
+    found, error = _both(case.finger, lambda of: [exponents(values(of), voltages) for voltages in ranges])
+    near = (np.abs(found - case.row.bounds[0]) <= EXPONENT).all(axis=0)
+    numbers = {"holds": near.sum(), "loads": near.size, "error": error, "low": found[0].min(), "high": found[0].max()}
+    return numbers | {"other_low": found[-1].min(), "other_high": found[-1].max()}, by_share(float(near.mean()))
 
 
 def _friction(finger: Finger) -> Array:
@@ -338,14 +285,15 @@ def _friction(finger: Finger) -> Array:
 
 def _asperities(finger: Finger) -> Array:
     """Return the length (m) of asperities in contact, by the mean pressure over the ridges' contact."""
-    law, length = finger.scene.closure(), finger.slips("contact_length")
+    law: Any = finger.scene.closure()
+    length = finger.slips("contact_length")
     borne = np.array(finger.forces)[:, None] + finger.slips("f_electrostatic")
-    return length * law.statistics(np.clip(borne / length, *law.pressures)).area  # type: ignore[attr-defined]
+    return np.asarray(length * law.statistics(np.clip(borne / length, *law.pressures)).area)
 
 
 def _rises(finger: Finger) -> Array:
     f_t = finger.slips("f_t")
-    return f_t[:, -1] / f_t[:, 0] - 1
+    return np.asarray(f_t[:, -1] / f_t[:, 0] - 1)
 
 
 def plates(finger: Finger, states: Sequence[ContactState], voltage: float) -> tuple[Array, Array]:
@@ -361,96 +309,76 @@ def _gaps(finger: Finger) -> Array:
     return 1e6 * np.concatenate([plates(finger, each, u)[0] for each, u in states])
 
 
-def _impedance(row: Finding, finger: Finger, all_: Fingers) -> Row:
+def _impedance(case: Case) -> Row:
     """Judge the impedance of a sliding finger over that of one at rest."""
-    held = all_["held"]
-    return drives.sliding(
-        row, held, plates(held, held.rest(HIGH), HIGH), finger, plates(finger, finger.slip(HIGH), HIGH)
-    )
+    held, finger = case.every["held"], case.finger
+    at = plates(held, held.rest(HIGH), HIGH), plates(finger, finger.slip(HIGH), HIGH)
+    return drives.sliding(case.row, held, at[0], finger, at[1])
 
 
 # -- adhesion --------------------------------------------------------------------------------------------------
-def _pull_off(row: Finding, finger: Finger) -> Row:
+def _pull_off(case: Case) -> Row:
     """Judge the largest tension of the whole finger while it is lifted, from slices that all were pressed."""
-    adheres = getattr(finger.scene, "adhesion", None)
-    if not adheres:
+    if not case.finger.adheres:
         return {"value": 0.0}, rules.MISS
-    states = [*finger.path("lift", "press")[-1:], *finger.path("lift", "lift")]
-    depth, force = (
-        np.array([sign * getattr(s, key) for s in states]) for sign, key in ((-1, "bone_height"), (1, "f_ext"))
-    )
-    order = np.argsort(depth)
-    pad = np.linspace(-1, 1, 2001) * finger.scene.slices.length / 2
-    rise = pad**2 / (2 * finger.scene.slices.radius)
-    every = [np.trapezoid(np.interp(d - rise, depth[order], force[order], left=0.0), pad) for d in depth]
+    states, pad = case.finger.path("lift", "lift"), case.finger.scene.slices
+    depth, force = np.array([(-s.bone_height, s.f_ext) for s in states]).T[:, ::-1]  # growing depths
+    z = np.linspace(-pad.length / 2, pad.length / 2, 2001)
+    every = [np.trapezoid(np.interp(d - z**2 / (2 * pad.radius), depth, force, left=0.0), z) for d in depth]
     tension = -1e3 * float(min(every))
-    return {"value": tension}, rules.by_rule(row, max(tension, 1e-9), max(tension, 1e-9))
+    return {"value": tension}, rules.by_rule(case.row, tension, tension)
 
 
 # -- all -------------------------------------------------------------------------------------------------------
-def _of(part: Callable[..., Row], *given: Any) -> Computation:
-    """Return the computation of a row that needs its finger alone."""
-    return lambda row, finger, all_: part(*given, finger)
-
-
-def _with(part: Callable[..., Row], **named: Any) -> Computation:
-    """Return the computation of a row that needs its finding and its finger."""
-    return lambda row, finger, all_: part(row, finger, **named)
-
-
-def _named(part: Callable[[Finger, Fingers], Row]) -> Computation:
-    return lambda row, finger, all_: part(finger, all_)
-
-
-_independent = _of(_over_load, lambda mu: by_share(float(_depends(mu) <= SIMILAR)))
-_shrinks = lambda state, before, holds: (  # noqa: E731
-    lambda row, finger, all_: _holds(finger, partial(_apparent, state, before), holds)
-)
+_SHRINKS = partial(_holds, values=partial(_apparent, after=("slip", 0.0), before=("rest", 0.0)), holds=_falls)
+_SAME = partial(_over_load, judge=lambda case, mu: by_share(float(_factor(mu) <= 1 + SIMILAR)))
+_FACTOR = partial(_over_load, judge=lambda case, mu: rules.by_rule(case.row, _factor(mu), _factor(mu)))
+_LESS = partial(_over_load, judge=lambda case, mu: by_share(float(1 - mu[-1] / mu[0] > SIMILAR)))
 ROWS: dict[str, Computation] = {
-    **dict.fromkeys(("share_db1", "share_db2", "ridges", "ridge_width"), _with(_value, value=_share)),
-    "gross_1n": _with(_value, value=partial(_one_newton, "gross_area", 1e6)),
-    "depth_1n": _with(_value, value=partial(_one_newton, "indentation", 1e3)),
-    "area_power": _of(_area_form, _LOW, rules.power, rules.line),
-    "area_linear": _of(_area_form, 0.0, rules.line, rules.power),
-    "area_load": _of(_area_load),
-    "area_before": _shrinks(_rest(HIGH), _rest(0.0), _same),
-    "area_after": _shrinks(_slip(HIGH), _slip(0.0), _falls),
-    **dict.fromkeys(("area_shear", "apparent_sliding"), _shrinks(_slip(0.0), _rest(0.0), _falls)),
-    "real_sliding": lambda row, finger, all_: _holds(finger, _length, lambda change: change > 0),
-    "real_shear": lambda row, finger, all_: _holds(finger, _length, lambda change: change < 0),
-    "stuck_share": _of(_linear),
-    "stuck_load": lambda row, finger, all_: _holds(
-        finger,
-        lambda of: -np.diff(np.log(_half_stuck(of))) / np.diff(np.log(of.forces)),
-        lambda found: np.abs(found + 1) <= EXPONENT,
+    **dict.fromkeys(("share_db1", "share_db2", "ridges", "ridge_width"), partial(_value, value=_share)),
+    "gross_1n": partial(_value, value=partial(_one_newton, name="gross_area", scale=1e6)),
+    "depth_1n": partial(_value, value=partial(_one_newton, name="indentation", scale=1e3)),
+    "area_power": partial(_area_form, least=_LOW, form=rules.power, other=rules.line),
+    "area_linear": partial(_area_form, least=0.0, form=rules.line, other=rules.power),
+    "area_load": partial(_holds, values=_grow, holds=lambda rise: rise > 0),
+    "area_before": partial(
+        _holds,
+        values=partial(_apparent, after=("rest", HIGH), before=("rest", 0.0)),
+        holds=lambda change: np.abs(change) < CHANGED,
     ),
-    "stuck_wet": _named(_stuck_wet),
-    "time": _of(_time),
-    "softer": _of(_softer),
-    "modulus": _of(_modulus),
-    "force_depth": _of(_force_depth),
-    "pressure_shape": _of(_pressure),
-    "friction_input": _with(_range, values=lambda of: of.mu),
-    "friction_wet": _with(_value, value=partial(_mu, _ONE)),
-    "friction_glass": _with(_range, values=_mus),
-    "friction_power": _of(_power_law),
-    **dict.fromkeys(("friction_load", "friction_savescu"), _independent),
-    "friction_occluded": lambda row, finger, all_: _over_load(
-        lambda mu: rules.by_rule(row, mu.max() / mu.min(), mu.max() / mu.min()), finger
+    "area_after": partial(_holds, values=partial(_apparent, after=("slip", HIGH), before=("slip", 0.0)), holds=_falls),
+    **dict.fromkeys(("area_shear", "apparent_sliding"), _SHRINKS),
+    "real_sliding": partial(_holds, values=_length, holds=lambda change: change > 0),
+    "real_shear": partial(_holds, values=_length, holds=lambda change: change < 0),
+    "stuck_share": partial(_near, value=_off_line),
+    "stuck_load": partial(
+        _holds, values=lambda of: -_slopes(of, _half_stuck(of)), holds=lambda found: np.abs(found + 1) <= EXPONENT
     ),
-    "friction_acrylic": _of(_over_load, lambda mu: by_share(float(1 - mu[-1] / mu[0] > SIMILAR))),
-    "friction_seo": _with(_friction_seo),
-    "friction_speed": _of(_speed, True),
-    "friction_no_speed": _of(_speed, False),
-    **dict.fromkeys(("friction_humid", "friction_moist_palm", "friction_time"), partial(_ratio, "fitted")),
-    "stiffness_shear": _of(_stiffness),
-    "delay_way": _with(_range, values=_way),
-    **dict.fromkeys(("adhesion", "adhesion_people"), _with(_pull_off)),
-    "friction_voltage": _of(_power, _friction, (VOLTAGES[1:],)),
-    "friction_range": _of(_power, _friction, AMPLITUDES),
-    "real_area": _of(_power, _asperities, AMPLITUDES),
-    "friction_slip": lambda row, finger, all_: _holds(finger, _rises, lambda rise: rise > 0),
-    "gap": _with(_range, values=_gaps),
+    "stuck_wet": _stuck_wet,
+    "time": _time,
+    "softer": _softer,
+    "modulus": _modulus,
+    "force_depth": _force_depth,
+    "pressure_shape": _pressure,
+    "friction_input": partial(_value, value=lambda of: of.mu),
+    "friction_wet": partial(_value, value=_mu),
+    "friction_glass": partial(_value, value=lambda of: _mus(of)[1]),
+    "friction_power": _power_law,
+    **dict.fromkeys(("friction_load", "friction_savescu"), _SAME),
+    "friction_occluded": _FACTOR,
+    "friction_acrylic": _LESS,
+    "friction_seo": partial(_near, value=_exponent),
+    "friction_speed": partial(_speed, wanted=True),
+    "friction_no_speed": partial(_speed, wanted=False),
+    **dict.fromkeys(("friction_humid", "friction_moist_palm", "friction_time"), _ratio),
+    "stiffness_shear": partial(_holds, values=_stiffness, holds=lambda found: np.abs(found - 1) <= EXPONENT),
+    "delay_way": partial(_value, value=_way),
+    **dict.fromkeys(("adhesion", "adhesion_people"), _pull_off),
+    "friction_voltage": partial(_power, values=_friction, ranges=(VOLTAGES[1:],)),
+    "friction_range": partial(_power, values=_friction, ranges=AMPLITUDES),
+    "real_area": partial(_power, values=_asperities, ranges=AMPLITUDES),
+    "friction_slip": partial(_holds, values=_rises, holds=lambda rise: rise > 0),
+    "gap": partial(_value, value=_gaps),
     "gap_sliding": _impedance,
     **drives.ROWS,
 }
