@@ -119,7 +119,7 @@ def finger():
 def test_row_of_a_finger(finger, name, verdict, numbers):
     """Exponents, factors and changes that the states were made with."""
     row = findings.read()[0][name]
-    found, judged = rows.ROWS[name](row, finger, {"fitted": finger})
+    found, judged = rows.ROWS[name](fingers.Case(row, finger, {"fitted": finger}))
     assert judged == verdict and {key: found[key] for key in numbers} == pytest.approx(numbers, abs=1e-9)
 
 

@@ -25,6 +25,7 @@ from benchmarks import harness
 from benchmarks.harness import cells
 from benchmarks.measured import felt, findings, fingers, rows, rules, timed
 from benchmarks.measured.findings import Finding
+from benchmarks.measured.fingers import Case
 from benchmarks.runs import Unfinished
 from fingerpad.results.pictures import style
 from fingerpad.scene import Scene
@@ -65,7 +66,7 @@ def judged(wanted: Sequence[Finding], out: Path, docs: Path) -> Iterator[tuple[s
     for row in wanted:
         try:
             if row.id in rows.ROWS:
-                found = rows.ROWS[row.id](row, every[row.finger], every)
+                found = rows.ROWS[row.id](Case(row, every[row.finger], every))
             else:
                 found = _COMPUTED[row.id](beside[row.id])
         except Unfinished as error:
@@ -88,9 +89,7 @@ def compute(args: argparse.Namespace) -> None:
         print(f"{each['verdict']:>12}  {name}: {_ours(name, each['numbers'])}")
     if not args.names:
         missing = [name for name, summary in summaries.items() if "failure" in summary]
-        presets = {name: fingers.preset(name) for name in fingers.NAMES}
-        numbers = {"rows": found, "missing": missing, "presets": presets}
-        harness.keep("measured", numbers, harness.made(summaries.values()), args.docs)
+        harness.keep("measured", {"rows": found, "missing": missing}, harness.made(summaries.values()), args.docs)
 
 
 # -- page ------------------------------------------------------------------------------------------------------
@@ -170,8 +169,8 @@ def site_error(errors: Any) -> float:
 def draw(docs: Path) -> Path:
     """Write docs/measured.md and its picture from docs/measured.json."""
     every = table(docs)
-    seen = harness.kept("felt", docs).numbers
-    harness.picture(docs / "measured.png", (11, 4), lambda figure: _paint(figure, seen, every))
+    field = harness.kept("felt", docs).numbers["subfield"]
+    harness.picture(docs / "measured.png", (10, 4), lambda figure: _paint(figure, field, every))
     by_name = {row.finding.id: row for row in every}
     topics = list(dict.fromkeys(row.finding.topic for row in every))
     names: dict[str, Any] = {"every": every, "topics": topics, "sources": findings.read()[1], "count": judges(every)}
@@ -186,23 +185,24 @@ def draw(docs: Path) -> Path:
     return harness.page(docs, "measured", "make measured", globals() | names, "felt", "viscosity")
 
 
-def _paint(figure: Figure, seen: Mapping[str, Any], every: Sequence[Row]) -> None:
-    """Draw the verdicts by topic, thresholds of nerves, and the stress of one site under a moving line load."""
-    left, middle, right = figure.subplots(1, 3)
+def _paint(figure: Figure, field: Mapping[str, Any], every: Sequence[Row]) -> None:
+    """Draw the verdicts by topic, and the stress of one site under a moving line load."""
+    left, right = figure.subplots(1, 2)
     topics = list(dict.fromkeys(row.finding.topic for row in every if row.finding.role == "judge"))
-    start = np.zeros(len(topics))
+    of_topic, start = (
+        [judges([row for row in every if row.finding.topic == topic]) for topic in topics],
+        np.zeros(len(topics)),
+    )
     looks = {rules.HIT: style.BLUE, rules.PART: style.ORANGE, rules.MISS: style.VERMILION, rules.OPEN: "lightgrey"}
     for verdict, colour in looks.items():
-        own = [judges([row for row in every if row.finding.topic == topic])[verdict] for topic in topics]
-        left.barh(topics, own, left=start, color=colour, label=verdict)
+        left.barh(topics, own := [each[verdict] for each in of_topic], left=start, color=colour, label=verdict)
         start += own
     left.set(xlabel="findings that judge", title="A  verdicts by topic")
     left.invert_yaxis()
     left.legend(fontsize=8)
-    felt.paint_thresholds(middle)
-    right.plot(1e3 * np.array(seen["subfield"]["s"]), seen["subfield"]["stress"], color=style.BLUE)
+    right.plot(1e3 * np.array(field["s"]), field["stress"], color=style.BLUE)
     right.axvspan(-0.2, 0.2, color=style.ORANGE, alpha=0.3, lw=0, label="measured subfield, 0.4 mm")
-    right.set(xlabel="place of the line load along the skin (mm)", title="C  stress at a Merkel site, line load")
+    right.set(xlabel="place of the line load along the skin (mm)", title="B  stress at a Merkel site, line load")
     right.legend(loc="lower center", fontsize=8)
 
 

@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from matplotlib.axes import Axes
 from numpy.typing import NDArray
 from scipy.stats import spearmanr
 
@@ -23,7 +22,6 @@ from benchmarks.runs import Run
 from fingerpad.afferents import threshold
 from fingerpad.results import fields
 from fingerpad.results.over_time import without_parts_of_jumps
-from fingerpad.results.pictures import style
 from fingerpad.results.spikes import Spikes
 from fingerpad.scene import Scene
 from fingerpad.scene import load as load_scene
@@ -397,19 +395,6 @@ def line() -> dict[str, Any]:
     arcs, values = subfield.response()
     near = np.abs(arcs) < _KEPT
     return {"s": arcs[near].tolist(), "stress": values[near].tolist(), "width": subfield.width(arcs, values)}
-
-
-def paint_thresholds(ax: Axes) -> None:
-    """Draw the thresholds of the classes over the frequency, and of the linear filters with one gain each."""
-    looks = {"SA1": (style.BLUE, "o"), "RA1": (style.VERMILION, "s"), "PC": (style.BLACK, "^")}
-    for law, (colour, marker) in looks.items():
-        f = np.array(list(THRESHOLDS[law]))
-        fine = np.geomspace(f[0], f[-1], 100)
-        ax.loglog(f, list(THRESHOLDS[law].values()), marker, color=colour, ms=5, label=f"{law} measured")
-        ax.loglog(fine, 1e6 * threshold(law, fine) / gains()[law][0], color=colour, lw=1.3)
-    ax.set(xlabel="frequency (Hz)", ylabel="threshold displacement (µm)")
-    ax.set_title("B  lines: filters of the classes, one gain each")
-    ax.legend(fontsize=8)
 
 
 ROWS: dict[str, Callable[[Numbers], Row]] = {

@@ -16,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.measured.findings import Finding
-from benchmarks.runs import Run, Unfinished, plain
-from fingerpad.scene import Scene, SceneError
-from fingerpad.scene.fingers import ADULT, FINGERS
+from benchmarks.runs import Run, Unfinished
+from fingerpad.scene import Scene, SceneError, with_values
+from fingerpad.scene.fingers import FINGERS
 from fingerpad.scene.materials import LAYERS
 from fingerpad.scene.viscosity import viscous_layers
 from fingerpad.slices.total import Total, at_force, profile
@@ -37,12 +37,8 @@ SOFTER = (2.0, 4.0)  # times, by which the stratum corneum is softened
 ROUGHER = 1.0  # friction coefficient beside that of the finger
 GROWS = 20.0  # s, for which the contact on glass was seen to grow
 SOFT = [name for name in LAYERS if not name.startswith("nail")]
+_LIFTED = 50e-6  # m above the first contact, to which a finger is lifted
 _LEAST = 3  # forces of which a finger's rows are made
-
-
-def preset(name: str) -> str:
-    """Return the finger of a finding's name; the default one while there are no fitted ones."""
-    return name if {name, "fitted"} <= FINGERS.keys() else ADULT
 
 
 def _history(force: float, timed: bool) -> list[dict[str, Any]]:
@@ -55,9 +51,8 @@ def _history(force: float, timed: bool) -> list[dict[str, Any]]:
 
 def scenes(name: str) -> dict[str, Scene]:
     """Return the scenes of a finger by kind and contact size (µm): ``slide 75 20``, ``charge 20``, ``soft 2 20``."""
-    base: dict[str, Any] = {} if preset(name) == ADULT else {"finger": preset(name)}
-    one, friction = plain(base), plain(base).friction_law()
-    viscous = bool(viscous_layers(one.materials))
+    one = with_values(Scene(), FINGERS[name].values)  # without its name: fingers of one kind share their runs
+    friction, viscous = one.friction_law(), bool(viscous_layers(one.materials))
     timed = name == "held" and (viscous or bool(friction and friction.times))
     charged = [{"name": f"press {f:g}", "f_ext": f, "voltage": HIGH} for f in FORCES]
     press = [{"name": "press", "f_ext": FORCE}]
@@ -73,12 +68,19 @@ def scenes(name: str) -> dict[str, Scene]:
         layers = {} if viscous else {each: {"viscosity": {"preset": "fingerpad"}} for each in SOFT}
         hold = {"name": "hold", "f_ext": FORCE, "duration": GROWS}
         kinds["hold"] = {"materials": layers, "history": [*press, hold]}
+    if name in ("fitted", "moist") and adheres(one):
+        kinds["lift"] = {"history": [*press, {"name": "lift", "bone_height": _LIFTED}]}
     mesh, output = {"receptor": 60e-6, "interface": 120e-6, "growth": 0.5}, {"receptors": False, "errors": False}
     return {
-        f"{kind} {1e6 * size:g}": plain({"mesh": {"contact": size} | mesh, "output": output} | base | more)
+        f"{kind} {1e6 * size:g}": one.replace(mesh={"contact": size} | mesh, output=output, **more)
         for size in SIZES
         for kind, more in kinds.items()
     }
+
+
+def adheres(scene: Scene) -> bool:
+    """Return whether skin adheres without a voltage."""
+    return getattr(getattr(scene, "adhesion", None), "work", 0.0) > 0
 
 
 @dataclass(frozen=True)
@@ -112,7 +114,7 @@ class Finger:
         Raises:
             Unfinished: there are fewer than three.
         """
-        found = tuple(f for f in FORCES if all(of._slips(f) for of in (self, self.coarse)))
+        found = tuple(f for f in FORCES if all(replace(self, size=size)._slips(f) for size in SIZES))
         if len(found) < _LEAST:
             raise Unfinished(f"full slip was reached at {len(found)} of {len(FORCES)} forces")
         return found
@@ -159,9 +161,11 @@ class Finger:
                 break
         return found
 
-    def sums(self, states: Sequence[ContactState], name: str) -> tuple[Array, Array]:
-        """Return forces (N) and a sum at each."""
-        totals = self.whole(states)
+    def sums(self, states: Sequence[ContactState], name: str, least: float = 0.0) -> tuple[Array, Array]:
+        """Return forces (N) from a least one on, and a sum at each; Unfinished where there are fewer than three."""
+        totals = {force: total for force, total in self.whole(states).items() if force >= least}
+        if len(totals) < _LEAST:
+            raise Unfinished(f"the traces reach {len(totals)} forces from {least:g} N on")
         return np.array(list(totals)), np.array([each.values[name] for each in totals.values()])
 
     def at(self, states: Sequence[ContactState], name: str, force: float) -> float:

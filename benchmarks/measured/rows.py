@@ -13,7 +13,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.measured import drives, rules
-from benchmarks.measured.fingers import FORCE, GROWS, HIGH, ROUGHER, SOFTER, VOLTAGES, Case, Computation, Finger, Row
+from benchmarks.measured.fingers import (
+    FORCE,
+    GROWS,
+    HIGH,
+    ROUGHER,
+    SOFTER,
+    VOLTAGES,
+    Case,
+    Computation,
+    Finger,
+    Row,
+    adheres,
+)
 from benchmarks.measured.rules import CHANGED, EXPONENT, RATIO, SIMILAR, STRIKING, by_factor, by_form, by_share
 from variational.attraction.dielectric import VACUUM_PERMITTIVITY
 from variational.state import ContactState
@@ -67,9 +79,8 @@ def _one_newton(finger: Finger, name: str, scale: float) -> float:
 
 def _area_form(case: Case, least: float, form: rules.Form, other: rules.Form) -> Row:
     """Judge a form of the gross area over the force from a least one (N) on, beside another one."""
-    force, area = case.finger.sums(case.finger.pressed, "gross_area")
-    at = force >= least
-    misfit, beside = (rules.of_each(each, force[at], area[at]).misfit for each in (form, other))
+    force, area = case.finger.sums(case.finger.pressed, "gross_area", least)
+    misfit, beside = (rules.of_each(each, force, area).misfit for each in (form, other))
     exponent, error = _both(case.finger, lambda of: np.polyfit(*np.log(of.sums(of.pressed, "gross_area")), 1)[0])
     numbers = {"misfit": misfit, "other": beside, "exponent": float(exponent), "error": error, "most": force[-1]}
     return numbers, by_form((misfit,), (beside,))
@@ -112,9 +123,9 @@ def _off_line(finger: Finger) -> float:
 
 
 def _half_stuck(finger: Finger) -> Array:
-    """Return the tangential force (N/m) at which a quarter of the contact sticks, at each force."""
+    """Return the tangential force (N/m) at which half of what sticks at rest still sticks, at each force."""
     found = [_stuck(finger, force) for force in finger.forces]
-    return np.array([np.interp(-_STUCK, -stuck, f_t) for f_t, stuck in found])
+    return np.array([np.interp(-stuck[0] / 2, -stuck, f_t) for f_t, stuck in found])
 
 
 def _slopes(finger: Finger, values: Array) -> Array:
@@ -207,8 +218,7 @@ def _mu(finger: Finger) -> float:
 
 def _mus(finger: Finger) -> tuple[Array, Array]:
     """Return forces (N) of several sources and the friction coefficient at each."""
-    force, mu = finger.sums(finger.slip(), "mu_app")
-    return force[force >= _LOW], mu[force >= _LOW]
+    return finger.sums(finger.slip(), "mu_app", _LOW)
 
 
 def _exponent(finger: Finger) -> float:
@@ -248,7 +258,9 @@ def _ratio(case: Case) -> Row:
 
 def _stiffness(finger: Finger) -> Array:
     """Return the exponent of the tangential stiffness over the load, between neighbouring forces."""
-    firsts = [[finger.path(f"slide {f:g}", "press")[-1], finger.path(f"slide {f:g}", "slip 0")[0]] for f in finger.forces]
+    firsts = [
+        [finger.path(f"slide {f:g}", "press")[-1], finger.path(f"slide {f:g}", "slip 0")[0]] for f in finger.forces
+    ]
     return _slopes(finger, np.array([(two.f_t - one.f_t) / (two.bone_x - one.bone_x) for one, two in firsts]))
 
 
@@ -319,7 +331,7 @@ def _impedance(case: Case) -> Row:
 # -- adhesion --------------------------------------------------------------------------------------------------
 def _pull_off(case: Case) -> Row:
     """Judge the largest tension of the whole finger while it is lifted, from slices that all were pressed."""
-    if not case.finger.adheres:
+    if not adheres(case.finger.scene):
         return {"value": 0.0}, rules.MISS
     states, pad = case.finger.path("lift", "lift"), case.finger.scene.slices
     depth, force = np.array([(-s.bone_height, s.f_ext) for s in states]).T[:, ::-1]  # growing depths
