@@ -14,7 +14,6 @@ import sys
 import tomllib
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -23,7 +22,7 @@ from matplotlib.figure import Figure
 
 from benchmarks import harness
 from benchmarks.harness import cells
-from benchmarks.measured import felt, findings, fingers, rows, rules, timed
+from benchmarks.measured import drives, felt, findings, fingers, rows, rules
 from benchmarks.measured.findings import Finding
 from benchmarks.measured.fingers import Case
 from benchmarks.runs import Unfinished
@@ -31,8 +30,9 @@ from fingerpad.results.pictures import style
 from fingerpad.scene import Scene
 
 _LIMIT = 1500.0  # s of processor time for one run
-_BESIDE = {"held": ("fitted",), "moist": ("fitted",), "fitted": ("held",), "paper": ()}
-"""Fingers whose runs the rows of a finger need too."""
+_OF_DRY = ("stuck_wet", "friction_humid", "friction_moist_palm", "friction_time")
+_BESIDE = {"gap_sliding": "held", **dict.fromkeys(_OF_DRY, "fitted")}
+"""Fingers whose runs a row needs too."""
 STATES = {
     "fitted": "dry",
     "moist": "sweating or wetted",
@@ -40,9 +40,9 @@ STATES = {
     "paper": "the default finger: the finding names no state, or its runs would be too long for another",
 }
 """Of the fingers that findings name."""
-_KEPT = {"felt": felt.ROWS, "viscosity": timed.ROWS}
+_KEPT = {"felt": felt.ROWS, "viscosity": rows.TIMED}
 """Rows of the numbers that other commands keep."""
-_COMPUTED: dict[str, Any] = {**rows.ROWS, **felt.ROWS, **timed.ROWS}
+_COMPUTED: dict[str, Any] = {**rows.ROWS, **felt.ROWS, **rows.TIMED}
 
 
 # -- runs ------------------------------------------------------------------------------------------------------
@@ -54,8 +54,8 @@ def chosen(names: Collection[str], every: Mapping[str, Finding]) -> list[Finding
 
 def scenes(wanted: Sequence[Finding]) -> dict[str, Scene]:
     """Return the scenes that findings need, by finger and kind."""
-    own = {row.finger for row in wanted if row.id in rows.ROWS}
-    names = [name for name in fingers.NAMES if name in own | {other for each in own for other in _BESIDE[each]}]
+    needed = {row.finger for row in wanted if row.id in rows.ROWS and row.id not in drives.WITHOUT_RUNS}
+    names = [name for name in fingers.NAMES if name in needed | {_BESIDE.get(row.id) for row in wanted}]
     return {f"{name}: {kind}": scene for name in names for kind, scene in fingers.scenes(name).items()}
 
 
@@ -123,7 +123,8 @@ def table(docs: Path) -> list[Row]:
         numbers, verdict = kept[name].values() if name in kept else ({}, rules.OPEN)
         link = f"[{places[row.source]}]({sources[row.source].link or '#sources'})"
         ours = _ours(name, numbers) if name in kept else "–"
-        cause = row.why if row.role == "context" else WORDS[name].get("cause", "") if verdict != rules.HIT else ""
+        missed = verdict in (rules.PART, rules.MISS)
+        cause = row.why if row.role == "context" else WORDS[name].get("cause", "") if missed else ""
         found.append(Row(row, ours, verdict, cause, link))
     return found
 
@@ -131,10 +132,9 @@ def table(docs: Path) -> list[Row]:
 def line(row: Row) -> str:
     """Return a row of the page's tables."""
     finding = row.finding
-    role = {"fit": "fitted", "context": "context"}.get(finding.role, "by construction" if finding.built else "")
-    marks = f" ({role})" if role else ""
+    role = {"fit": " (fitted)", "context": " (context)"}.get(finding.role, " (by construction)" * finding.built)
     area = f" [{finding.area}]" if finding.area else ""
-    verdict = f"**{row.verdict}**{marks}{f': {row.cause}' if row.cause else ''}"
+    verdict = f"**{row.verdict}**{role}{f': {row.cause}' if row.cause else ''}"
     words = f"{finding.quantity}{area}; {finding.condition} {row.source}"
     return cells(words, finding.measured, f"`{finding.finger}`", row.ours, verdict)
 
@@ -147,56 +147,41 @@ def judges(every: Sequence[Row], finger: str = "") -> Counter[str]:
 
 def side(row: Row) -> str:
     """Return a row's part of the table of contradictions."""
-    return cells(
-        f"{row.finding.quantity}, {row.finding.measured} {row.source}, `{row.finding.finger}`", f"**{row.verdict}**"
-    )
-
-
-def _shown(every: Sequence[Row], topic: str) -> list[Row]:
-    return [row for row in every if row.finding.topic == topic and (row.finding.role != "context" or row.ours != "–")]
+    finding = row.finding
+    return cells(f"{finding.quantity}, {finding.measured} {row.source}, `{finding.finger}`", f"**{row.verdict}**")
 
 
 def site_error(errors: Any) -> float:
-    """Return the largest known error of energy densities at Merkel sites, over their value, on the default's path mesh.
-
-    Args:
-        errors: numbers of docs/errors.json.
-    """
+    """Return the largest known error of energy densities at Merkel sites on the default path mesh, over their value."""
     found, limits = errors["again"]["path"]["values"], errors["reference"]
     return float(max(abs(found[key] / limits[key]["value"] - 1) for key in limits if "_sed_" in key))
 
 
 def draw(docs: Path) -> Path:
     """Write docs/measured.md and its picture from docs/measured.json."""
-    every = table(docs)
-    field = harness.kept("felt", docs).numbers["subfield"]
+    every, field = table(docs), harness.kept("felt", docs).numbers["subfield"]
     harness.picture(docs / "measured.png", (10, 4), lambda figure: _paint(figure, field, every))
-    by_name = {row.finding.id: row for row in every}
-    topics = list(dict.fromkeys(row.finding.topic for row in every))
-    names: dict[str, Any] = {"every": every, "topics": topics, "sources": findings.read()[1], "count": judges(every)}
-    names |= {"pairs": [[by_name[each.id] for each in pair] for pair in findings.pairs(findings.read()[0])]}
-    names |= {"site_error": site_error(harness.kept("errors", docs).numbers), "shown": partial(_shown, every)}
-    names |= {"READ": lambda name: ", ".join(sorted({r.finding.read for r in every if r.finding.source == name}))}
-    fits = [row for row in every if row.finding.role == "fit"]
-    names |= {
-        "fits": fits,
-        "built": sum(r.finding.built and r.verdict == rules.HIT and r.finding.role == "judge" for r in every),
-    }
+    by_name, (rows_, sources) = {row.finding.id: row for row in every}, findings.read()
+    names: dict[str, Any] = {"every": every, "sources": sources, "count": judges(every)}
+    names |= {"pairs": [[by_name[each.id] for each in pair] for pair in findings.pairs(rows_)]}
+    names |= {"site_error": site_error(harness.kept("errors", docs).numbers)}
+    names |= {"fits": [row for row in every if row.finding.role == "fit"], "judging": [*filter(_judges, every)]}
     return harness.page(docs, "measured", "make measured", globals() | names, "felt", "viscosity")
+
+
+def _judges(row: Row) -> bool:
+    return row.finding.role == "judge"
 
 
 def _paint(figure: Figure, field: Mapping[str, Any], every: Sequence[Row]) -> None:
     """Draw the verdicts by topic, and the stress of one site under a moving line load."""
     left, right = figure.subplots(1, 2)
-    topics = list(dict.fromkeys(row.finding.topic for row in every if row.finding.role == "judge"))
-    of_topic, start = (
-        [judges([row for row in every if row.finding.topic == topic]) for topic in topics],
-        np.zeros(len(topics)),
-    )
+    topics = list(dict.fromkeys(row.finding.topic for row in filter(_judges, every)))
+    found, start = [judges([row for row in every if row.finding.topic == topic]) for topic in topics], [0] * len(topics)
     looks = {rules.HIT: style.BLUE, rules.PART: style.ORANGE, rules.MISS: style.VERMILION, rules.OPEN: "lightgrey"}
     for verdict, colour in looks.items():
-        left.barh(topics, own := [each[verdict] for each in of_topic], left=start, color=colour, label=verdict)
-        start += own
+        left.barh(topics, [each[verdict] for each in found], left=start, color=colour, label=verdict)
+        start = [before + each[verdict] for before, each in zip(start, found, strict=True)]
     left.set(xlabel="findings that judge", title="A  verdicts by topic")
     left.invert_yaxis()
     left.legend(fontsize=8)

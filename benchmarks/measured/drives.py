@@ -55,7 +55,7 @@ def _here(finger: Finger) -> Layers:
     return layers(REFERENCE, finger.scene)
 
 
-def _small(case: Case) -> Row:
+def _frequency(case: Case) -> Row:
     """Judge the change of mean friction and contact length from 30 to 230 Hz, at each force and amplitude.
 
     A sine has the friction of the constant voltage that attracts as much, between those of the runs.
@@ -74,7 +74,7 @@ def _small(case: Case) -> Row:
     return numbers, by_share(float(holds.mean()))
 
 
-def _wide(case: Case) -> Row:
+def _frequency_wide(case: Case) -> Row:
     """Judge in how many steps attraction rises from 10 Hz to 10 kHz, at every gap."""
     found = np.array([_share(RISE, at) for at in _all(case.finger)])
     rises, ratio = float((np.diff(found, axis=1) > 0).mean()), found[:, -1] / found[:, 0]
@@ -119,7 +119,7 @@ def _square_above(case: Case) -> Row:
     return {"low": above.min(), "high": above.max()}, by_share(float(np.mean(np.abs(above - 1) <= SIMILAR)))
 
 
-def _shape(case: Case) -> Row:
+def _threshold_shape(case: Case) -> Row:
     """Judge whether thresholds over the frequency have a least one inside, for a sine and for a square."""
     at, holds, numbers = _here(case.finger), [], {}
     for wave in ("sine", "square"):
@@ -173,7 +173,7 @@ def sliding(row: Finding, held: Finger, rest: Any, slides: Finger, slip: Any) ->
     return {"low": low, "high": high}, rules.by_rule(row, low, high)
 
 
-def _constant(case: Case) -> Row:
+def _direct(case: Case) -> Row:
     """Judge whether an alternating voltage attracts where a constant one no longer does."""
     at = _here(case.finger)
     return {"ac": float(_share(PEAK, at))}, by_share(float(abs(circuit(at).gain(0.0, *at)) == 0))
@@ -188,17 +188,10 @@ def _skin(case: Case) -> Row:
     return {"value": value, "phase_1": float(np.angle(z[0], deg=True))}, rules.by_rule(case.row, value, value)
 
 
-ROWS: dict[str, Computation] = {
-    "frequency": _small,
-    "frequency_wide": _wide,
-    "cut_off": _cut_off,
-    "peak": _peak,
-    "peak_high": _peak_high,
-    **dict.fromkeys(("skin_impedance", "skin_phase"), _skin),
-    "square_below": _square_below,
-    "square_above": _square_above,
-    "threshold_shape": _shape,
-    "direct": _constant,
-    "moist": _moist,
-}
+_PARTS: tuple[Computation, ...] = (
+    *(_frequency, _frequency_wide, _cut_off, _peak, _peak_high),
+    *(_square_below, _square_above, _threshold_shape, _direct, _moist),
+)
+ROWS = {part.__name__[1:]: part for part in _PARTS} | dict.fromkeys(("skin_impedance", "skin_phase"), _skin)
 """Computations of findings by name."""
+WITHOUT_RUNS = ROWS.keys() - {"frequency"}

@@ -55,8 +55,7 @@ THRESHOLDS: dict[str, dict[float, float]] = {
 PEOPLE = {2: 24.3, 5: 11.1, 10: 5.34, 20: 1.87, 40: 0.496, 80: 0.115, 100: 0.079, 150: 0.049, 200: 0.042, 250: 0.046,
           300: 0.070, 350: 0.120}  # fmt: skip
 """Thresholds of nerves, and of people (µm) by frequency (Hz): curves of previous literature, digitised, ± 3 dB."""
-_ANSWER = 0.03  # s, after the begin of a step of the voltage, in which spikes are those of the step
-_SETTLED = 0.05  # s, after which a hold has settled
+_ANSWER, _SETTLED = 0.03, 0.05  # s: in which spikes are those of a step of the voltage; after which a hold has settled
 _FLANK = (1 / 8, 3 / 8)  # of the ridges' wavelength from a ridge's middle, within which its flank is
 _COARSE: dict[str, Any] = {
     "mesh": {"contact": 20e-6, "receptor": 20e-6, "growth": 0.5},
@@ -70,23 +69,18 @@ def _scene(*loads: Mapping[str, Any], **more: Any) -> Scene:
     return Scene(**_COARSE, history=[dict(load) for load in loads], **more)
 
 
-def _press(f_ext: float, seconds: float | None = None) -> dict[str, Any]:
-    return {"name": "press", "f_ext": f_ext} | ({} if seconds is None else {"duration": seconds})
+def _press(f_ext: float, **more: Any) -> dict[str, Any]:
+    return {"name": "press", "f_ext": f_ext} | more
 
 
 def onset() -> Scene:
     """A press, a hold, and the onset of sliding without voltage."""
     hold, slide = {"name": "hold", "bone_x_by": 0.0, "duration": HOLD}, {"bone_x": 1.2e-3, "speed": SPEED}
-    return _scene(_press(LOAD, PRESS), hold, {"name": "slide"} | slide)
+    return _scene(_press(LOAD, duration=PRESS), hold, {"name": "slide"} | slide)
 
 
 def step(f_ext: float, preset: str | None = None) -> Scene:
-    """A voltage that rises, stays and falls while the finger slides under a load (N/m).
-
-    Args:
-        f_ext: the load.
-        preset: of the viscosity of the soft layers, which relax before the voltage rises; elastic without it.
-    """
+    """A voltage that rises, stays and falls in sliding under a load (N/m); layers of a viscous preset relax before."""
     times = [0.0, RISE, RISE + STEP, FALL, FALL + STEP, LAST]
     table = {"waveform": "file", "times": times, "voltages": [0.0, 0.0, VOLTS, VOLTS, 0.0, 0.0]}
     last = {"name": "step", "bone_x_by": SPEED * LAST, "voltage": table}
@@ -95,7 +89,7 @@ def step(f_ext: float, preset: str | None = None) -> Scene:
     hold = {"name": "hold", "bone_x_by": 0.0, "duration": RELAXED}
     settle = {"name": "settle", "bone_x_by": SLOW * RELAXED, "duration": RELAXED}
     materials = {layer: {"viscosity": {"preset": preset}} for layer in SOFT}
-    return _scene(_press(f_ext, PRESS), hold, _SLIDE | {"speed": SPEED}, settle, last, materials=materials)
+    return _scene(_press(f_ext, duration=PRESS), hold, _SLIDE | {"speed": SPEED}, settle, last, materials=materials)
 
 
 def grating(f_ext: float, period: float) -> Scene:
@@ -111,7 +105,7 @@ def charged(volts: float, friction: float) -> Scene:
     """A press, a wait in which a voltage may be switched on, and the onset of sliding."""
     wait = {"name": "wait", "bone_x_by": 0.0, "voltage": volts, "duration": 0.02}
     slide = {"name": "slide", "bone_x": 2.5e-3, "speed": 2 * SPEED}
-    return _scene(_press(LOAD, PRESS), wait, slide, friction=friction)
+    return _scene(_press(LOAD, duration=PRESS), wait, slide, friction=friction)
 
 
 def scenes() -> dict[str, Scene]:
@@ -277,10 +271,6 @@ def compute(args: argparse.Namespace) -> None:
 
 
 # -- findings --------------------------------------------------------------------------------------------------
-def _by(holds: bool) -> str:
-    return by_share(float(holds))
-
-
 def _ratios(numbers: Numbers, key: str, skin: str = "viscous") -> dict[str, float]:
     """Return the change in the rise over that in the fall, by load."""
     return {load: step["rise"][key] / step["fall"][key] for load, step in numbers[skin].items()}
@@ -293,26 +283,26 @@ def _numbered(ratios: Mapping[str, float], name: str = "at") -> dict[str, float]
 def _rise_felt(numbers: Numbers) -> Row:
     rise, fall, *elastic = (numbers[skin][f"{LOAD:g}"][change]["RA1"] for skin in SKINS for change in ("rise", "fall"))
     found = {"rise": rise, "fall": fall, "elastic_rise": elastic[0], "elastic_fall": elastic[1]}
-    return found, _by(rise > MORE * fall)
+    return found, by_share(rise > MORE * fall)
 
 
 def _rise_friction(numbers: Numbers) -> Row:
     ratios = _ratios(numbers, "f_t")
     found = _numbered(ratios) | _numbered(_ratios(numbers, "f_t", "elastic"), "elastic")
-    return found, _by(min(ratios.values()) > CHANGED)
+    return found, by_share(min(ratios.values()) > CHANGED)
 
 
 def _rise_contact(numbers: Numbers) -> Row:
     length, strain = _ratios(numbers, "length"), _ratios(numbers, "strain")
     before = [abs(r - 1) for key in ("length", "strain") for r in _ratios(numbers, key, "elastic").values()]
     found = _numbered(length, "length") | _numbered(strain, "strain") | {"elastic": max(before)}
-    return found, _by(min([*length.values(), *strain.values()]) > CHANGED)
+    return found, by_share(min([*length.values(), *strain.values()]) > CHANGED)
 
 
 def _rise_low_load(numbers: Numbers) -> Row:
     ratios = _ratios(numbers, "f_t")
     low = ratios[f"{min(LOADS):g}"]
-    return _numbered({k: v - 1 for k, v in ratios.items()}), _by(low > CHANGED and low == max(ratios.values()))
+    return _numbered({k: v - 1 for k, v in ratios.items()}), by_share(low > CHANGED and low == max(ratios.values()))
 
 
 def _gratings(numbers: Numbers, key: str) -> dict[tuple[float, float], float]:
@@ -322,40 +312,40 @@ def _gratings(numbers: Numbers, key: str) -> dict[tuple[float, float], float]:
 def _gratings_period(numbers: Numbers) -> Row:
     f_t, (short, long) = _gratings(numbers, "f_t"), PERIODS
     ratios = {f"{load:g}": f_t[load, long] / f_t[load, short] for load in GRATING_LOADS}
-    return _numbered(ratios), _by(max(ratios.values()) < 1 / CHANGED)
+    return _numbered(ratios), by_share(max(ratios.values()) < 1 / CHANGED)
 
 
 def _gratings_load(numbers: Numbers) -> Row:
     rate, (light, heavy) = _gratings(numbers, "RA1"), GRATING_LOADS
     found = {f"{k}_{n}": rate[f, p] for k, f in (("light", light), ("heavy", heavy)) for n, p in enumerate(PERIODS)}
-    return found, _by(all(rate[light, p] > MORE * rate[heavy, p] for p in PERIODS))
+    return found, by_share(all(rate[light, p] > MORE * rate[heavy, p] for p in PERIODS))
 
 
 def _gratings_rate(numbers: Numbers) -> Row:
     rate, force = _gratings(numbers, "RA1"), _gratings(numbers, "rate")
     found = float(spearmanr([rate[k] for k in rate], [force[k] for k in rate]).statistic)
-    return {"value": found}, _by(found >= 0.8 - ROUNDOFF)
+    return {"value": found}, by_share(found >= 0.8 - ROUNDOFF)
 
 
 def _slip_onset(numbers: Numbers) -> Row:
     found = numbers["onset"]
     strain, more = found["RA1 strain"], found["SA1"] - found["SA1 before"]
     every = {"strain": strain, "stress": found["RA1"], "slow": found["SA1"], "more": more}
-    return every, _by(strain > 0 and strain >= 3 * max(more, 0.0))
+    return every, by_share(strain > 0 and strain >= 3 * max(more, 0.0))
 
 
 def _hold_adapts(numbers: Numbers) -> Row:
     found = numbers["hold"]
-    return found, _by(found["RA1"] == 0 and found["least"] >= 1.5)
+    return found, by_share(found["RA1"] == 0 and found["least"] >= 1.5)
 
 
 def _subfield(numbers: Numbers) -> Row:
     width = numbers["subfield"]["width"]
-    return {"width": 1e3 * width}, _by(0.3e-3 <= width <= 0.5e-3)
+    return {"width": 1e3 * width}, by_share(0.3e-3 <= width <= 0.5e-3)
 
 
 def _flanks(numbers: Numbers) -> Row:
-    return numbers["shear"], _by(numbers["shear"]["vertical"] >= 2 * numbers["shear"]["horizontal"])
+    return numbers["shear"], by_share(numbers["shear"]["vertical"] >= 2 * numbers["shear"]["horizontal"])
 
 
 def _same_energy(numbers: Numbers) -> Row:
@@ -364,28 +354,22 @@ def _same_energy(numbers: Numbers) -> Row:
     return parts | {key: found[key] for key in ("sed", "mu_app")}, by_bar(max(parts.values()), FEW)
 
 
-def _nerves(numbers: Numbers) -> Row:
+def _nerve_thresholds(numbers: Numbers) -> Row:
     rms = {law: rms for law, (_, rms) in numbers["thresholds"].items()}
-    return rms, _by(all(rms[law] <= RMS[law] for law in RMS))
+    return rms, by_share(all(rms[law] <= RMS[law] for law in RMS))
 
 
-def _people(numbers: Numbers) -> Row:
+def _human_threshold(numbers: Numbers) -> Row:
     """Judge the least threshold of the classes, each with its gain on nerves, by that of people."""
     every = [1e6 * threshold(law, list(PEOPLE)) / gain for law, (gain, _) in numbers["thresholds"].items()]
     rms = float(np.sqrt(np.mean(np.log10(np.min(every, axis=0) / np.array(list(PEOPLE.values()))) ** 2)))
     return {"value": rms}, by_bar(rms, 0.2, 0.3)
 
 
-def log_gain(ours: Any, theirs: Any) -> tuple[float, float]:
-    """Return log10 of the gain by which thresholds are above others, and the rms of log10 that it leaves."""
-    apart = np.log10(np.asarray(ours) / np.asarray(theirs))
-    return float(apart.mean()), float(np.sqrt(np.mean((apart - apart.mean()) ** 2)))
-
-
 def gains() -> dict[str, tuple[float, float]]:
-    """Return by class the gain of the linear filters' thresholds over the measured ones of nerves, and the rms."""
-    every = {law: log_gain(1e6 * threshold(law, list(f)), list(f.values())) for law, f in THRESHOLDS.items()}
-    return {law: (10**gain, rms) for law, (gain, rms) in every.items()}
+    """Return by class the gain of the filters' thresholds over those of nerves, and the rms of log10 that it leaves."""
+    every = {law: np.log10(1e6 * threshold(law, list(f)) / list(f.values())) for law, f in THRESHOLDS.items()}
+    return {law: (float(10 ** apart.mean()), float(apart.std())) for law, apart in every.items()}
 
 
 def line() -> dict[str, Any]:
@@ -397,20 +381,9 @@ def line() -> dict[str, Any]:
     return {"s": arcs[near].tolist(), "stress": values[near].tolist(), "width": subfield.width(arcs, values)}
 
 
-ROWS: dict[str, Callable[[Numbers], Row]] = {
-    "rise_felt": _rise_felt,
-    "rise_friction": _rise_friction,
-    "rise_contact": _rise_contact,
-    "rise_low_load": _rise_low_load,
-    "gratings_period": _gratings_period,
-    "gratings_load": _gratings_load,
-    "gratings_rate": _gratings_rate,
-    "slip_onset": _slip_onset,
-    "hold_adapts": _hold_adapts,
-    "subfield": _subfield,
-    "flanks": _flanks,
-    "same_energy": _same_energy,
-    "nerve_thresholds": _nerves,
-    "human_threshold": _people,
-}
+_PARTS: tuple[Callable[[Numbers], Row], ...] = (
+    *(_rise_felt, _rise_friction, _rise_contact, _rise_low_load, _gratings_period, _gratings_load, _gratings_rate),
+    *(_slip_onset, _hold_adapts, _subfield, _flanks, _same_energy, _nerve_thresholds, _human_threshold),
+)
+ROWS = {part.__name__[1:]: part for part in _PARTS}
 """Computations of findings by name."""

@@ -1,7 +1,6 @@
 """Findings on human fingers: the rows of data/findings.toml, whose head has their keys, read and checked."""
 
 import tomllib
-from collections import Counter
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -110,6 +109,6 @@ def read(path: Path = FILE) -> tuple[dict[str, Finding], dict[str, Source]]:
 
 def pairs(findings: dict[str, Finding]) -> list[tuple[Finding, Finding]]:
     """Return each contradiction once, in the order of the rows."""
-    found = Counter(frozenset((name, other)) for name, row in findings.items() for other in row.against)
-    every = (tuple(findings[name] for name in findings if name in pair) for pair in found)
-    return [(one, other) for one, other in every]
+    place = list(findings).index
+    every = ((row, findings[other]) for row in findings.values() for other in row.against)
+    return [(one, other) for one, other in every if place(one.id) < place(other.id)]

@@ -5,13 +5,14 @@ slices. The real area is the contact length or area of the ridges, and over the 
 stated error is the difference of two meshes.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks import viscosity
 from benchmarks.measured import drives, rules
 from benchmarks.measured.fingers import (
     FORCE,
@@ -193,9 +194,8 @@ def _softer(case: Case) -> Row:
 
 
 def _modulus(case: Case) -> Row:
-    (soft, error), (rough, _) = (
-        _both(case.finger, partial(_change, kind=kind)) for kind in (f"soft {SOFTER[-1]:g}", "rough")
-    )
+    kinds = f"soft {SOFTER[-1]:g}", "rough"
+    (soft, error), (rough, _) = (_both(case.finger, partial(_change, kind=kind)) for kind in kinds)
     numbers = {"soft": soft[0], "rough": rough[0], "error": error, "friction": ROUGHER}
     return numbers, by_share(float(abs(soft[0]) > abs(rough[0])))
 
@@ -328,6 +328,31 @@ def _impedance(case: Case) -> Row:
     return drives.sliding(case.row, held, at[0], finger, at[1])
 
 
+# -- viscous skin, of docs/viscosity.json (make viscosity) -----------------------------------------------------
+def _relaxation(known: Mapping[str, Any]) -> Row:
+    """Judge the three times of the force at a held depth."""
+    times = known["held"]["times"]
+    factors = np.array(times) / viscosity.TIMES
+    numbers = {f"time_{k}": 1e3 * time for k, time in enumerate(times)}
+    return numbers, by_factor(factors.min(), factors.max(), 1.0, 1.0, RATIO)
+
+
+def _delay(known: Mapping[str, Any]) -> Row:
+    """Judge that friction follows a voltage with a delay, at first order, and sooner at the higher speed."""
+    delays, fitted = [], []
+    for speed in viscosity.SPEEDS:
+        found = known["steps"][f"fingerpad at {1e3 * speed:g} mm/s"]
+        time, rise = np.array(found["time"]), np.array(found["rise"])
+        delays.append(float(np.interp(1 - np.exp(-1), np.maximum.accumulate(rise), time)))
+        early = time <= 3 * found["way"] / speed
+        fits = [rules.of_largest(form, time[early][1:], rise[early][1:]) for form in (rules.first_order, rules.ramp)]
+        fitted.append([fit.misfit for fit in fits])
+    misfits, others = zip(*fitted, strict=True)
+    holds = [min(delays) > 0, delays[1] < delays[0], by_form(misfits, others) == rules.HIT]
+    names = {"slow": 1e3 * delays[0], "fast": 1e3 * delays[1], "misfit": max(misfits), "ramp": max(others)}
+    return names, by_share(sum(holds) / len(holds))
+
+
 # -- adhesion --------------------------------------------------------------------------------------------------
 def _pull_off(case: Case) -> Row:
     """Judge the largest tension of the whole finger while it is lifted, from slices that all were pressed."""
@@ -395,3 +420,5 @@ ROWS: dict[str, Computation] = {
     **drives.ROWS,
 }
 """By the name of a finding."""
+TIMED: dict[str, Callable[[Mapping[str, Any]], Row]] = {"relaxation": _relaxation, "speed": _delay}
+"""Of the numbers of docs/viscosity.json."""

@@ -73,8 +73,6 @@ def by_form(misfits: Sequence[float], others: Sequence[float]) -> str:
 
 # -- forms -----------------------------------------------------------------------------------------------------
 Array = NDArray[np.float64]
-Form = Callable[[Array, float], Array]
-"""A curve over x with one parameter, of any scale."""
 
 
 class Fit(NamedTuple):
@@ -84,70 +82,32 @@ class Fit(NamedTuple):
     misfit: float
 
 
-def exponential(x: Array, b: float) -> Array:
-    """Return exp(b x / x_max) - 1."""
-    return np.asarray(np.expm1(b * x / x.max()))
+class Form(NamedTuple):
+    """A curve over x with one parameter, of any scale."""
+
+    curve: Callable[[Array, float], Array]
+    low: float
+    """Least parameter that is looked for."""
+    high: float
+    """Largest one."""
+
+    def __call__(self, x: Array, parameter: float) -> Array:
+        """Return the curve."""
+        return np.asarray(self.curve(x, parameter))
 
 
-def power(x: Array, n: float) -> Array:
-    """Return (x / x_max)^n."""
-    return np.asarray((x / x.max()) ** n)
-
-
-def line(x: Array, start: float) -> Array:
-    """Return a straight line that begins with a share of its last value."""
-    return np.asarray(start + (1 - start) * x / x.max())
-
-
-def high_pass(x: Array, cut: float) -> Array:
-    """Return the square of a first-order high-pass, with a cut-off in units of the largest x."""
-    return np.asarray(x**2 / (x**2 + (cut * x.max()) ** 2))
-
-
-def first_order(x: Array, tau: float) -> Array:
-    """Return 1 - exp(-x / tau), with a time in units of the largest x."""
-    return np.asarray(-np.expm1(-x / (tau * x.max())))
-
-
-def ramp(x: Array, end: float) -> Array:
-    """Return a straight rise that ends at a part of the largest x, and stays."""
-    return np.asarray(np.minimum(x / (end * x.max()), 1.0))
-
-
-def falling_power(x: Array, n: float) -> Array:
-    """Return (x / x_min)^-n."""
-    return np.asarray((x / x.min()) ** -n)
-
-
-def falling_line(x: Array, end: float) -> Array:
-    """Return a straight line from 1 down to a part of it."""
-    return np.asarray(1 - (1 - end) * (x - x.min()) / np.ptp(x))
-
-
-def paraboloid(x: Array, a: float) -> Array:
-    """Return 1 - (x / a)², with a half width in units of the largest |x|; 0 outside."""
-    return np.asarray(np.clip(1 - (x / (a * np.abs(x).max())) ** 2, 0, None))
-
-
-def ellipse(x: Array, a: float) -> Array:
-    """Return half an ellipse, Hertz's pressure; arguments as of :func:`paraboloid`."""
-    return np.asarray(np.sqrt(paraboloid(x, a)))
-
-
-_WIDTHS = (1.0, 10.0)
-BOUNDS: dict[Form, tuple[float, float]] = {
-    exponential: (1e-3, 50.0),
-    power: (0.05, 10.0),
-    line: (0.0, 0.99),
-    high_pass: (1e-4, 1.0),
-    first_order: (1e-3, 10.0),
-    ramp: (1e-3, 1.0),
-    falling_power: (1e-3, 10.0),
-    falling_line: (1e-3, 1.0),
-    paraboloid: _WIDTHS,
-    ellipse: _WIDTHS,
-}
-"""Where the parameter of each form is looked for."""
+exponential = Form(lambda x, b: np.expm1(b * x / x.max()), 1e-3, 50.0)
+power = Form(lambda x, n: (x / x.max()) ** n, 0.05, 10.0)
+line = Form(lambda x, start: start + (1 - start) * x / x.max(), 0.0, 0.99)
+high_pass = Form(lambda x, cut: x**2 / (x**2 + (cut * x.max()) ** 2), 1e-4, 1.0)
+"""The square of a first-order one, with a cut-off in units of the largest x."""
+first_order = Form(lambda x, tau: -np.expm1(-x / (tau * x.max())), 1e-3, 10.0)
+ramp = Form(lambda x, end: np.minimum(x / (end * x.max()), 1.0), 1e-3, 1.0)
+falling_power = Form(lambda x, n: (x / x.min()) ** -n, 1e-3, 10.0)
+falling_line = Form(lambda x, end: 1 - (1 - end) * (x - x.min()) / np.ptp(x), 1e-3, 1.0)
+paraboloid = Form(lambda x, a: np.clip(1 - (x / (a * np.abs(x).max())) ** 2, 0, None), 1.0, 10.0)
+ellipse = Form(lambda x, a: np.sqrt(paraboloid(x, a)), 1.0, 10.0)
+"""Half an ellipse, Hertz's pressure."""
 
 
 def of_each(form: Form, x: Array, y: Array) -> Fit:
@@ -175,5 +135,5 @@ def scale(curve: Array, y: Array) -> float:
 
 
 def _least(rest: Callable[[float], float], form: Form) -> Fit:
-    found = minimize_scalar(rest, bounds=BOUNDS[form], method="bounded", options={"xatol": 1e-9})
+    found = minimize_scalar(rest, bounds=(form.low, form.high), method="bounded", options={"xatol": 1e-9})
     return Fit(float(found.x), float(found.fun))
