@@ -222,7 +222,7 @@ def test_record_without_whole_periods_is_refused(periods, end, tmp_path):
     """As a drive, with both ends; as a load it is the voltage that it is."""
     t, u = sine(periods, 200)
     file = {"waveform": "file", "file": written(tmp_path, "time (s),U (V)", t, u)}
-    with pytest.raises(fp.SceneError, match=rf"begins with 0 V and ends with {end} .* so cut it to whole periods"):
+    with pytest.raises(fp.SceneError, match=rf"begins with 0 V and ends with {end}.*so cut it to whole periods"):
         fp.Scene(voltage=file)
     scene = fp.Scene(history=[PRESS, {"name": "wave", "duration": 0.02, "voltage": file}])
     assert scene.history[1].voltage.times[-1] == pytest.approx(periods / 50)
