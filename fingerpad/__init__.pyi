@@ -4,12 +4,16 @@ import geometry as geometry
 from fingerpad import afferents as afferents
 from fingerpad.measurements.compare import compare as compare
 from fingerpad.model.body import Body as Body
+from fingerpad.reduced.closed_form import ClosedForm as ClosedForm
+from fingerpad.reduced.closed_form import closed_form as closed_form
+from fingerpad.reduced.press import Press as Press
 from fingerpad.results.quantities import Output as Output
 from fingerpad.results.result import Result as Result
 from fingerpad.runs.drive import Drive as Drive
 from fingerpad.runs.drive import drive as drive
 from fingerpad.runs.inverse import Solution as Solution
 from fingerpad.runs.inverse import solve as solve
+from fingerpad.runs.press import press as press
 from fingerpad.runs.solve import run as run
 from fingerpad.runs.sweep import sweep as sweep
 from fingerpad.runs.sweep_results import Sweep as Sweep
@@ -18,6 +22,8 @@ from fingerpad.scene import SceneError as SceneError
 from variational.attraction.circuit import GapCircuit as GapCircuit
 from variational.attraction.dielectric import ColeCole as ColeCole
 from variational.attraction.dielectric import TabledTissue as TabledTissue
+from variational.contact.aging import Growing as Growing
+from variational.contact.aging import GrowingShear as GrowingShear
 from variational.contact.aging import Occlusion as Occlusion
 from variational.contact.aging import Speed as Speed
 from variational.contact.augmented import AugmentedLagrangian as AugmentedLagrangian
