@@ -30,7 +30,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from fingerpad.model.cautions import examine, on_scene, sticking
 from fingerpad.reduced import cylinder_errors, default_finger
@@ -211,12 +211,7 @@ def _over_forces(
         length = np.array([each.contact_length for each in press])
         ridges = np.array([each.ridges_in_contact for each in press])
     else:
-        scaled = _scaled(scene)
-        of_default = np.array(f_ext) / scaled.force
-        length, ridges = (
-            scaled.length * default_finger.lengths(of_default, state),
-            default_finger.ridges(of_default, state),
-        )
+        length, ridges = uncharged(scene, f_ext, state)
     radius, closure = tips * tip_radius(scene.geometry), scene.closure()
     forces, lengths = np.array(f_ext) / ridges, tips**0.5 * length / ridges
     moduli, stiffening = hertz_modulus(radius, forces, lengths), _stiffening(scene, state, shear)
@@ -238,6 +233,16 @@ def _over_forces(
         under = scene.model_copy(update={"f_ext": float(each)})
         states.append((reduced_state(under, contact, state == "full_slip"), ridge))
     return states
+
+
+def uncharged(scene: Scene, f_ext: ArrayLike, state: str) -> tuple[Array, NDArray[np.int_]]:
+    """Return contact length (m) and ridges in contact without voltage; arguments of :func:`over_forces`, which raises.
+
+    They are those of the default finger, or of one similar to it.
+    """
+    scaled = _scaled(scene)
+    forces = np.asarray(f_ext) / scaled.force
+    return scaled.length * default_finger.lengths(forces, state), default_finger.ridges(forces, state)
 
 
 def _stiffening(scene: Scene, state: str, shear: float) -> Callable[[Array], Array] | None:
