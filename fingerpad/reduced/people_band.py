@@ -88,7 +88,7 @@ class Fingers:
     def _factor(self, name: str) -> Array:
         return self.factors.get(name, np.ones(len(self.laws)))
 
-    def _contact(self, f_ext: Array) -> tuple[Array, Array]:
+    def _contact(self, f_ext: Array) -> tuple[Array, NDArray[Any]]:
         """Return length (m) and number of ridges in contact of the one finger without voltage, under forces (N/m)."""
         press = self.press if self.press is not None and self.press.contact_length > 0 else None
         like = _default() if press is not None and isinstance(similar(self.scene), str) else self.scene
@@ -101,8 +101,9 @@ class Fingers:
     def _surfaces(self) -> tuple[Array, list[Closure]]:
         """Return the effective insulator thickness (m) of each finger, and its closure."""
         electric, skin = self.scene.electric, self._factor("size") * self._factor("stratum corneum")
-        coating = self._factor("coating") * electric.d_i
-        h_0 = insulator_thickness(skin * self.scene.geometry.sc_thickness, electric.eps_sc, coating, electric.eps_i)
+        coating: Any = self._factor("coating") * electric.d_i
+        skin *= self.scene.geometry.sc_thickness
+        h_0: Any = insulator_thickness(skin, electric.eps_sc, coating, electric.eps_i)  # type: ignore[arg-type]
         laws: Any = zip(self.closures, self._factor("roughness"), h_0, strict=True)
         return h_0, [
             replace(law, h_rms=float(rough * law.h_rms), h_0=float(each)) if law.shared else law

@@ -57,7 +57,7 @@ def _friction(scene: Scene, factor: float) -> dict[str, Any]:
     if not isinstance(own, Friction):
         return {"friction": factor * own}
     numbers = {f.name: factor * getattr(own, f.name) for f in fields(own) if f.name.startswith(("mu_", "tau_"))}  # type: ignore[arg-type]
-    found = replace(own, **numbers)
+    found = replace(own, **numbers)  # type: ignore[type-var]
     if not np.allclose(found.limit(_PRESSURES), factor * own.limit(_PRESSURES), rtol=1e-9, atol=0.0):
         raise SceneError(f"friction is {own}; no number of this law, such as mu_f, multiplies all of its friction")
     return {"friction": found}

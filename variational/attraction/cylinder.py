@@ -121,8 +121,8 @@ class Cylinder:
         f = np.asarray(f, dtype=float)
         if not np.all(f > 0):
             raise NoEquilibriumError(f"the force on a ridge is {f[~(f > 0)][0]:g} N/m; it must be greater than 0")
-        values = (np.broadcast_to(np.asarray(x, dtype=float), f.shape) for x in (self.modulus, self.radius, self.h_0))
-        loads = _Loads(f, *values, np.arange(len(f)))
+        mine = [np.broadcast_to(np.asarray(x, dtype=float), f.shape) for x in (self.modulus, self.radius, self.h_0)]
+        loads = _Loads(f, *mine, np.arange(len(f)))  # type: ignore[call-arg]
         count, every = len(f), len(_PRESSURES)
         grid = loads[np.tile(np.arange(count), every)]
         beyond, values = (each.reshape(every, count) for each in self._excess(_PRESSURES, voltage, grid))
@@ -276,6 +276,6 @@ def _roots(function: Callable[[Array], Array], low: tuple[Array, Array], high: t
     return np.where(abs(f_1) < abs(f_2), x_1, x_2)
 
 
-def hertz_modulus(radius: float, f: ArrayLike, length: ArrayLike) -> Array:
+def hertz_modulus(radius: float | Array, f: ArrayLike, length: ArrayLike) -> Array:
     """Return the modulus E* (Pa) of the cylinder that has a contact length (m) under a force (N/m), uncharged."""
     return np.asarray(4 * radius * np.asarray(f) / (np.pi * (np.asarray(length) / 2) ** 2))
