@@ -7,7 +7,7 @@ import pytest
 from scipy import stats
 
 import fingerpad as fp
-from fingerpad.reduced import people_band
+from fingerpad.reduced import cylinders, people_band
 from fingerpad.reduced.closure_band import closures, friction
 from fingerpad.reduced.people_band import Fingers, with_people
 from fingerpad.report import run_page
@@ -99,7 +99,7 @@ def test_people_of_a_range_are_the_closed_form_s(law):
     found = Fingers(scene, middle.full_slip, None, False, factors, *laws).mu_app()
     for k, mu_app in enumerate(found):
         one = with_factors(scene, {name: each[k] for name, each in factors.items()})
-        assert mu_app == pytest.approx(fp.run(one, model="cylinders").full_slip.mu_app, rel=1e-9)
+        assert mu_app == pytest.approx(cylinders.solve(one).full_slip.mu_app, rel=1e-9)
 
 
 def test_a_force_in_newtons_is_the_same_for_all():

@@ -18,7 +18,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike, NDArray
 
-from fingerpad.scene.fingers import ADULT, SOFT
+from fingerpad.scene.fingers import SOFT
 from fingerpad.scene.messages import SceneError, show
 from fingerpad.scene.scene import Scene
 from variational.contact.friction import Friction
@@ -95,8 +95,8 @@ SPREADS: Mapping[str, Spread] = {
         "friction coefficient, or shear stress",
         "lognormal",
         0.5,
-        "Coefficients of variation of 0.25 to 0.75 between 16 people, static (Ergonomics 2010, 53(6), abstract). "
-        "Assumption: the middle of them",
+        "Coefficients of variation of 0.25 to 0.75 between 16 people, static (Ergonomics 2010, 53(6), abstract; row "
+        "friction_between of data/findings.toml). Assumption: the middle of them",
         _friction,
     ),
     "stiffness": Spread(
@@ -104,7 +104,7 @@ SPREADS: Mapping[str, Spread] = {
         "normal",
         0.12,
         "Surface waves on fingers take 3.2 ± 0.2 m/s at 26 ± 3 years, and moduli go with their square (doi "
-        "10.1098/rsos.170321, abstract). Assumption: in all layers alike",
+        "10.1098/rsos.170321, abstract; row stiffness_people). Assumption: in all layers alike",
         _stiffness,
     ),
     "size": Spread(
@@ -134,7 +134,7 @@ SPREADS: Mapping[str, Spread] = {
 """Spreads between people, for all fingers: the one table of them."""
 
 
-def people(n: int, seed: int, finger: str = ADULT, **changes: Any) -> list[Scene]:
+def people(n: int, seed: int, finger: str = "fitted", **changes: Any) -> list[Scene]:
     """Return the scenes of people drawn from the spreads between them, :data:`SPREADS`.
 
     The same seed gives the same people on every machine, and the first of them whatever their number. Draws are of
