@@ -7,8 +7,10 @@ import pytest
 from scipy import stats
 
 import fingerpad as fp
-from fingerpad.reduced import cylinders, people_band
+from fingerpad.reduced import people_band, press
+from fingerpad.reduced.closed_form import closed_form
 from fingerpad.reduced.closure_band import closures, friction
+from fingerpad.reduced.cylinders import over_forces
 from fingerpad.reduced.people_band import Fingers, with_people
 from fingerpad.report import run_page
 from fingerpad.scene.fingers import FINGERS
@@ -88,29 +90,49 @@ def test_one_spread_has_its_own_quantiles(result, monkeypatch):
     assert [found["low"], found["high"]] == pytest.approx(0.25 * quantiles(name, [0.05, 0.95]), rel=2e-3)
 
 
-@pytest.mark.parametrize("law", [0.25, fp.Derjaguin(mu_f=0.1, tau_0=6e3)], ids=["Coulomb", "shear stress"])
-def test_people_of_a_range_are_the_closed_form_s(law):
-    """The same people one by one as scenes of the closed form, to roundoff of its roots."""
-    middle = fp.run(fp.Scene(friction=law, voltage=150.0), model="cylinders")
-    parts = np.random.default_rng(1).random((12, len(SPREADS)))
+def of_person(known, size, stiffness):
+    """Return the press of a finger with lengths and moduli times those of another: as a dimensional analysis has it."""
+
+    def times(factor, by_state):
+        return {state: tuple(factor * each for each in values) for state, values in by_state.items()}
+
+    forces = tuple(size * stiffness * each for each in known.forces)
+    return replace(
+        known, forces=forces, lengths=times(size, known.lengths), indentations=times(size, known.indentations)
+    )
+
+
+@pytest.mark.parametrize(
+    "keys",
+    [{}, {"friction": fp.Derjaguin(mu_f=0.1, tau_0=6e3)}, {"finger": "fitted"}],
+    ids=["Coulomb", "shear stress", "flat tips"],
+)
+def test_people_of_a_range_are_the_closed_form_s(keys):
+    """The same people one by one as scenes of the closed form with their presses, to roundoff of its roots."""
+    scene = fp.Scene(voltage=150.0, **keys)
+    (slip,), parts = over_forces(scene, [75.0], "full_slip"), np.random.default_rng(1).random((12, len(SPREADS)))
     factors = {name: spread.factor(column) for (name, spread), column in zip(SPREADS.items(), parts.T, strict=True)}
-    scene = middle.scene
     laws = [scene.closure()] * 12, [scene.friction_law()] * 12
-    found = Fingers(scene, middle.full_slip, None, False, factors, *laws).mu_app()
+    found = Fingers(scene, slip, None, False, factors, *laws).mu_app()
     for k, mu_app in enumerate(found):
         one = with_factors(scene, {name: each[k] for name, each in factors.items()})
-        assert mu_app == pytest.approx(cylinders.solve(one).full_slip.mu_app, rel=1e-9)
+        pressed = of_person(press.of(scene), factors["size"][k], factors["stiffness"][k])
+        assert mu_app == pytest.approx(over_forces(one, [75.0], "full_slip", pressed)[0].mu_app, rel=1e-9)
 
 
 def test_a_force_in_newtons_is_the_same_for_all():
-    """A finger of another size and stiffness, under the force of its centre that the whole finger then has.
-
-    Forces go as the power 0.77 of that at the centre; the sum of slices has them to 2 % for 15 % of both.
-    """
-    scene = fp.Scene(force="0.5 N", voltage=0.0)
-    other = with_factors(scene, {"size": 1.15, "stiffness": 1.15})
-    centres = [fp.run(each, model="cylinders").full_slip.f_ext for each in (scene, other)]
-    assert centres[1] / centres[0] == pytest.approx(1.15**2 * 1.15**-2.31, rel=0.02)
+    """A finger of another size and stiffness: the ratio of the middle section is that of whole fingers, to 1 %."""
+    scene, factors = fp.Scene(force="0.5 N", voltage=200.0), {"size": 1.2, "stiffness": 1.2}
+    one = with_factors(scene, factors)
+    whole = [
+        closed_form(each, known).finger(0.5).mu_app
+        for each, known in ((one, of_person(press.of(scene), 1.2, 1.2)), (scene, None))
+    ]
+    (slip,), laws = over_forces(scene, [75.0], "full_slip"), ([scene.closure()] * 2, [scene.friction_law()] * 2)
+    both = {name: np.array([factor, 1.0]) for name, factor in factors.items()}
+    here, there = Fingers(scene, slip, None, True, both, *laws).mu_app()
+    print(here / there, whole[0] / whole[1], [x for x in Fingers(scene, slip, None, False, both, *laws).mu_app()])
+    assert here / there == pytest.approx(whole[0] / whole[1], rel=0.01)
 
 
 def test_other_closures_among_people_have_their_numbers(result):
@@ -132,11 +154,10 @@ def test_text_report_and_files_have_the_range(result):
 
 
 def test_a_finger_without_a_range_has_the_reason(result):
-    """Another finger, whose contact without voltage the closed form does not have; with it there is a range."""
-    other = replace(result, scene=result.scene.replace(geometry={"sc_thickness": 850e-6}), record={})
-    assert "not that of the default finger" in with_people(other).people["why"]
-    press = replace(result.full_slip, voltage=0.0)
-    assert with_people(replace(other, uncharged=press)).people["high"] > 0.5
+    """Another finger, which has no press; with its contact without voltage there is a range."""
+    other = replace(result, scene=result.scene.replace(geometry={"sc_thickness": 851e-6}), record={})
+    assert "has no press yet" in with_people(other).people["why"]
+    assert with_people(replace(other, uncharged=replace(result.full_slip, voltage=0.0))).people["high"] > 0.5
 
 
 def test_adhering_people_open_the_upper_end(result):

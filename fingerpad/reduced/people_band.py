@@ -3,11 +3,11 @@ r"""The range of friction over people, by charged cylinders: many fingers about 
 Each finger is that of the result with factors on its friction, stiffness, size, insulator and roughness
 (:mod:`fingerpad.scene.people`). Its µ_app is that of the result, times the ratio of the charged cylinders', as in
 :mod:`fingerpad.reduced.closure_band`. Its contact without voltage is that of the result by similarity: with lengths s
-and moduli m times those of the result, :math:`L(f) = s\,L_1(f / (s m))`. The closed form gives :math:`L_1`; for a
-result with a contact without voltage its growth with the force alone, which is the default finger's where it has no
-other. A force in newtons stays the same: the force at the centre of
-a finger, per length, is then :math:`(s m) (s^2 m)^{-0.77}` times that of the result. The circuit of a drive stays the
-result's.
+and moduli m times those of the result, :math:`L(f) = s\,L_1(f / (s m))`. The finger's press gives :math:`L_1`
+(:mod:`fingerpad.reduced.press`). A result with a contact without voltage has its length, and grows with the force as
+its press, or as that of the default finger where it has none. A force in newtons stays the same: the force at the
+centre of a finger, per length, is then :math:`(s m) (s^2 m)^{-0.77}` times that of the result. The circuit of a drive
+stays the result's.
 
 The range has nine in ten of :data:`POINTS` people, from the 5th to the 95th percentile. Their factors are a Latin
 hypercube: each spread has the middles of as many equal parts, in the order of a Kronecker sequence (M. Roberts 2018,
@@ -22,15 +22,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fingerpad.reduced.cylinders import SHEAR, tip_radius, uncharged
-from fingerpad.reduced.default_finger import similar
+from fingerpad.reduced import press
+from fingerpad.reduced.cylinders import SHEAR, tip_of
 from fingerpad.results.quantities import PEOPLE
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.parameters import POWER
 from fingerpad.scene.people import SPREADS
-from fingerpad.scene.remarks import coefficient
-from variational.attraction.cylinder import Cylinder, NoEquilibriumError, RidgeState, hertz_modulus
+from variational.attraction.cylinder import Cylinder, NoEquilibriumError, RidgeState
 from variational.attraction.dielectric import insulator_thickness
 from variational.contact.friction import Friction
 from variational.roughness.closure import Closure
@@ -55,7 +54,7 @@ class Fingers:
     """Of the one."""
     slip: ContactState
     """Its full slip."""
-    press: ContactState | None
+    uncharged: ContactState | None
     """The same without voltage, where it is known."""
     whole: bool
     """Whether the force in newtons is the same for all, else that per length."""
@@ -75,8 +74,8 @@ class Fingers:
         size, stiffness = self._factor("size"), self._factor("stiffness")
         f_ext = self.slip.f_ext * (size * stiffness * (size**2 * stiffness) ** -POWER if self.whole else size**0)
         length, ridges = self._contact(f_ext / (size * stiffness))
-        radius, forces = size * tip_radius(self.scene.geometry), f_ext / ridges
-        ridge = Cylinder(radius, hertz_modulus(radius, forces, size * length / ridges), *self._surfaces())
+        tip, forces = tip_of(self.scene.geometry, length / ridges).scaled(size), f_ext / ridges
+        ridge = Cylinder(tip, tip.modulus(forces, size * length / ridges), *self._surfaces())
         every = np.arange(len(forces))
         parts = np.array_split(every, -(-len(every) // _TOGETHER))
         found = [each for part in parts for each in self._solved(ridge, forces, part)]
@@ -90,12 +89,13 @@ class Fingers:
 
     def _contact(self, f_ext: Array) -> tuple[Array, NDArray[Any]]:
         """Return length (m) and number of ridges in contact of the one finger without voltage, under forces (N/m)."""
-        press = self.press if self.press is not None and self.press.contact_length > 0 else None
-        like = _default() if press is not None and isinstance(similar(self.scene), str) else self.scene
-        length, ridges = uncharged(like, np.append(f_ext, self.slip.f_ext), "full_slip")
-        if press is not None:
-            length = press.contact_length * length / length[-1]
-            ridges = np.maximum(np.rint(press.ridges_in_contact * ridges / ridges[-1]), 1)
+        here = self.uncharged if self.uncharged is not None and self.uncharged.contact_length > 0 else None
+        known = press.of(_default() if here is not None and press.known(self.scene) is None else self.scene)
+        forces = np.append(f_ext, self.slip.f_ext)
+        length, ridges = known.length(forces, "full_slip"), known.ridge_count(forces, "full_slip")
+        if here is not None:
+            length = here.contact_length * length / length[-1]
+            ridges = np.maximum(np.rint(here.ridges_in_contact * ridges / ridges[-1]), 1).astype(int)
         return length[:-1], ridges[:-1]
 
     def _surfaces(self) -> tuple[Array, list[Closure]]:
@@ -112,13 +112,12 @@ class Fingers:
 
     def _solved(self, ridge: Cylinder, forces: Array, chosen: NDArray[np.intp]) -> list[RidgeState | None]:
         """Return the states of a ridge of chosen fingers; None without an equilibrium."""
-        radius, moduli, h_0 = (np.asarray(each)[chosen] for each in (ridge.radius, ridge.modulus, ridge.h_0))
+        moduli, h_0 = (np.asarray(each)[chosen] for each in (ridge.modulus, ridge.h_0))
 
         def gain(p_c: Array, number: NDArray[np.intp]) -> Array:  # by shear, see fingerpad.reduced.cylinders
-            known = coefficient(_default()) or 0.0
-            return SHEAR * np.maximum(self._limit(p_c, chosen[number]) - known * p_c, 0.0)
+            return SHEAR * np.maximum(self._limit(p_c, chosen[number]) - press.KNOWN * p_c, 0.0)
 
-        mine = Cylinder(radius, moduli, h_0, [ridge.closure[k] for k in chosen], gain)  # type: ignore[index]
+        mine = Cylinder(ridge.tip[chosen], moduli, h_0, [ridge.closure[k] for k in chosen], gain)  # type: ignore[index]
         drive = self.scene.drive
         try:
             return [*mine.under_loads(forces[chosen], self.slip.voltage if drive is None else drive.effective)]
