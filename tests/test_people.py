@@ -121,7 +121,10 @@ def test_people_of_a_range_are_the_closed_form_s(keys):
 
 
 def test_a_force_in_newtons_is_the_same_for_all():
-    """A finger of another size and stiffness: the ratio of the middle section is that of whole fingers, to 1 %."""
+    """A finger of another size and stiffness: the ratio of the middle section is that of whole fingers.
+
+    To 0.3 %, of a change of 4.5 %; under the same force per length it is 6.2 %.
+    """
     scene, factors = fp.Scene(force="0.5 N", voltage=200.0), {"size": 1.2, "stiffness": 1.2}
     one = with_factors(scene, factors)
     whole = [
@@ -131,8 +134,7 @@ def test_a_force_in_newtons_is_the_same_for_all():
     (slip,), laws = over_forces(scene, [75.0], "full_slip"), ([scene.closure()] * 2, [scene.friction_law()] * 2)
     both = {name: np.array([factor, 1.0]) for name, factor in factors.items()}
     here, there = Fingers(scene, slip, None, True, both, *laws).mu_app()
-    print(here / there, whole[0] / whole[1], [x for x in Fingers(scene, slip, None, False, both, *laws).mu_app()])
-    assert here / there == pytest.approx(whole[0] / whole[1], rel=0.01)
+    assert here / there == pytest.approx(whole[0] / whole[1], rel=3e-3)
 
 
 def test_other_closures_among_people_have_their_numbers(result):
