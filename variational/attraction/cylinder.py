@@ -22,9 +22,9 @@ surfaces are under that pressure (Forsbach et al. 2023, Eqs. 3, 4 and 13):
 Without voltage this is Hertz's law. A tip that is no cylinder (:mod:`~variational.attraction.tip`) has its own force
 and gap in the place of those with R. The force f is given, and a follows from the second equation. E* may grow with
 p_c, as in a ridge that friction shears. The gap at c grows with m then, which leaves one m at each p_c, and one
-equation in p_c. It can have several roots: that of the highest pressure is the branch in contact, on which the loop over the
-scales contracts; others are unstable, or states of a ridge that has not jumped on the screen yet. Where the highest
-root vanishes the ridge is past its pull-off fold and there is none.
+equation in p_c. It can have several roots: that of the highest pressure is the branch in contact, on which the loop
+over the scales contracts; others are unstable, or states of a ridge that has not jumped on the screen yet. Where the
+highest root vanishes the ridge is past its pull-off fold and there is none.
 """
 
 from collections.abc import Callable
