@@ -41,15 +41,15 @@ Data = dict[str, Any]
 
 
 def ship() -> None:
-    """Make the presses that the package has not."""
-    from fingerpad.runs.press import made
+    """Put the presses that the package has not into it, from the cache or made now."""
+    from fingerpad.runs.press import press as pressed
 
     file = REDUCED / "presses.json"
     kept = json.loads(file.read_text(encoding="utf-8"))
     for finger in sorted(NAMES, key=lambda name: name not in FINGERS):
         scene = Scene(finger=finger)
         if press.name(scene) not in kept:
-            found = asdict(made(scene))
+            found = asdict(pressed(scene))
             for name in ("lengths", "ridges", "indentations"):
                 del found[name]["full_slip"]  # follows from the other
             kept[press.name(scene)] = found

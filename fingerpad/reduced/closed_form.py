@@ -4,7 +4,7 @@ It has the numbers of the model "cylinders" (:mod:`fingerpad.reduced.cylinders`)
 and known errors. Friction, roughness and coating are those of the scene; shape and layers are in the press.
 """
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from fingerpad.reduced.cylinders import over_forces
@@ -89,9 +89,7 @@ class ClosedForm:
 
     def _states(self, f_ext: list[float], voltage: float | None) -> list[ContactState]:
         scene = self.scene if voltage is None else self.scene.model_copy(update={"voltage": float(voltage)})
-        depths = self.press.indentation(f_ext, _SLIP).tolist()
-        found = over_forces(scene, f_ext, _SLIP, self.press)
-        return [replace(state, bone_height=-depth) for state, depth in zip(found, depths, strict=True)]
+        return self.press.lowered(over_forces(scene, f_ext, _SLIP, self.press), _SLIP)
 
     def _trace(self, voltage: float | None) -> Trace:
         """Return the trace of the section at a voltage (V), which is kept for other forces."""

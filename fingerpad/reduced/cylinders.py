@@ -89,9 +89,7 @@ class Cylinders(Model):
         self, scene: Scene, f_ext: Sequence[float], state: str, solve: Callable[[Scene], Result]
     ) -> list[ContactState]:
         """Return the states computed together, with the indentations without voltage."""
-        depths = press.of(scene).indentation(f_ext, state).tolist()
-        found = over_forces(scene, f_ext, state)
-        return [replace(each, bone_height=-depth) for each, depth in zip(found, depths, strict=True)]
+        return press.of(scene).lowered(over_forces(scene, f_ext, state), state)
 
     def of_finger(self, scene: Scene, section: Result, finger: "WholeFinger") -> Result:
         """Return the result with the known error of the whole finger, or a caution that it is not known."""

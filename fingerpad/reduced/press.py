@@ -16,8 +16,8 @@ have 1 to 6 % (docs/presses.json).
 """
 
 import json
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict, dataclass, replace
 from functools import cache
 from hashlib import sha256
 from importlib.resources import files
@@ -31,6 +31,7 @@ from fingerpad.results.files import replace_json
 from fingerpad.scene.messages import SceneError, show
 from fingerpad.scene.scene import Scene
 from variational.roughness import gaps
+from variational.state import ContactState
 
 Array = NDArray[np.float64]
 FORCES = (2.0, 3.86, 7.45, 14.4, 27.8, 53.6, 104.0, 200.0)
@@ -84,6 +85,10 @@ class Press:
         A voltage of 200 V moves the bone of the default finger at full slip by up to 6 %.
         """
         return self.interpolate(f_ext, self.indentations[state])
+
+    def lowered(self, states: Iterable[ContactState], state: str) -> list[ContactState]:
+        """Return states of one kind with the indentations without voltage."""
+        return [replace(each, bone_height=-float(self.indentation(each.f_ext, state))) for each in states]
 
     def interpolate(self, f_ext: ArrayLike, values: tuple[float, ...] | tuple[int, ...]) -> Array:
         """Return power laws through the two neighbours, at the ends through the last two; shape of the forces."""
