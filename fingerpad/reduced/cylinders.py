@@ -191,15 +191,14 @@ def _over_forces(
     """Return the states of :func:`over_forces`, and those of a ridge."""
     own, force, law = pressed or press.of(scene), np.array(f_ext), scene.friction_law()
     rolls = state == "full_slip" and law is not None and isinstance(own, Press) and not own.slid
-    if isinstance(own, Press):
-        length, mean = own.length(f_ext, state), own.ridge_count(f_ext, state)
-    else:
-        length = np.array([each.contact_length for each in own])
-        mean = np.array([each.ridges_in_contact for each in own])
+    length = own.length(f_ext, state) if isinstance(own, Press) else np.array([each.contact_length for each in own])
 
     def solved(left: Any) -> tuple[NDArray[np.int_], list[RidgeState]]:
         """Return how many ridges are in contact, and their states, with a part of the press's contact left."""
-        ridges = np.maximum(np.rint(left * mean).astype(int), 1)
+        if isinstance(own, Press):
+            ridges = own.ridge_count(f_ext, state, left)
+        else:
+            ridges = np.array([each.ridges_in_contact for each in own])
         return ridges, _ridges(scene, state, force / ridges, left * length / ridges, tips, shear)
 
     if rolls and law is not None:

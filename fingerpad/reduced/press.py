@@ -83,9 +83,10 @@ class Press:
         """Return the contact length (m) under external forces (N/m) in a state."""
         return self.interpolate(f_ext, self.lengths.get(state, self.lengths["charged"]))
 
-    def ridge_count(self, f_ext: ArrayLike, state: str) -> Array:
-        """Return the number of ridges in contact, a mean between integers; arguments of :meth:`length`."""
-        return self.interpolate(f_ext, self.ridges.get(state, self.ridges["charged"]))
+    def ridge_count(self, f_ext: ArrayLike, state: str, left: ArrayLike = 1.0) -> NDArray[np.int_]:
+        """Return the number of ridges in contact, of which a part is left; arguments of :meth:`length`."""
+        found = self.interpolate(f_ext, self.ridges.get(state, self.ridges["charged"]))
+        return np.maximum(np.rint(left * found).astype(int), 1)
 
     def indentation(self, f_ext: ArrayLike, state: str) -> Array:
         """Return how far the bone is lowered (m), without voltage; arguments of :meth:`length`.
