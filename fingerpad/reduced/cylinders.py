@@ -20,10 +20,11 @@ contact pressure:
 
 The one number :math:`\kappa` (:data:`SHEAR`) is fitted to the attraction of states of the full model of the default
 finger, of seeded scenes over coatings, forces, voltages and friction coefficients. Other states test it, and so do all
-contact lengths (``docs/closed_form.md``). The number of ridges stays that of the press.
+contact lengths (``docs/closed_form.md``). The number of ridges stays that of the press. A press without full slip has
+the ridges and the length that friction leaves of its contact (:mod:`fingerpad.reduced.press`), and the same κ.
 
-The model leaves out that ridges in the middle bear more than those at the edge, and that ridges come and go with the
-voltage. ``docs/closed_form.md`` has its errors.
+The model leaves out that ridges in the middle bear more than those at the edge, and that ridges come with the voltage.
+``docs/closed_form.md`` has its errors.
 """
 
 import time
@@ -50,6 +51,7 @@ from geometry.profiles import Profiles
 from variational.attraction.cylinder import Cylinder, NoEquilibriumError, RidgeState
 from variational.attraction.tip import Power, Round, Tip, kernel
 from variational.caution import Caution
+from variational.contact.friction import Friction
 from variational.state import ContactState, Errors
 
 if TYPE_CHECKING:
@@ -59,17 +61,21 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 SHEAR = 10.0
 """What the modulus of a ridge gains, over the shear stress beyond that of the default friction coefficient."""
+_ROLLS, _LEAST_LEFT = 20, 0.4  # iterations, and the least part of the contact that may be left
 _FLAT = 0.01
 """Of a ridge's height: how far its middle may be below its crests."""
 
 
 def _source(scene: Scene) -> str:
     """Return in words where the contact length is from."""
-    low, high = (press.of(scene).forces[k] for k in (0, -1))
+    own = press.of(scene)
+    low, high = own.forces[0], own.forces[-1]
     source = "uncharged contact length interpolated between forces of one press of this finger"
     if not low <= scene.f_ext <= high:
         source = f"uncharged contact length extrapolated from a press of this finger at {low:g} to {high:g} N/m"
-    if scene.friction != press.KNOWN:
+    if not own.slid:
+        source += "; that of full slip less what friction rolls off"
+    elif scene.friction != press.KNOWN:
         source += f"; that of full slip with a friction coefficient of {press.KNOWN:g}, and shorter by more shear"
     return source
 
@@ -89,9 +95,7 @@ class Cylinders(Model):
         self, scene: Scene, f_ext: Sequence[float], state: str, solve: Callable[[Scene], Result]
     ) -> list[ContactState]:
         """Return the states computed together, with the indentations without voltage."""
-        depths = press.of(scene).indentation(f_ext, state).tolist()
-        found = over_forces(scene, f_ext, state)
-        return [replace(each, bone_height=-depth) for each, depth in zip(found, depths, strict=True)]
+        return press.of(scene).lowered(over_forces(scene, f_ext, state), state)
 
     def of_finger(self, scene: Scene, section: Result, finger: "WholeFinger") -> Result:
         """Return the result with the known error of the whole finger, or a caution that it is not known."""
@@ -185,21 +189,26 @@ def _over_forces(
     shear: float = SHEAR,
 ) -> list[tuple[ContactState, RidgeState]]:
     """Return the states of :func:`over_forces`, and those of a ridge."""
-    own = pressed or press.of(scene)
-    if isinstance(own, Press):
-        length, ridges = own.length(f_ext, state), own.ridge_count(f_ext, state)
-    else:
-        length = np.array([each.contact_length for each in own])
-        ridges = np.array([each.ridges_in_contact for each in own])
-    forces, tip, closure = np.array(f_ext) / ridges, tip_of(scene.geometry, length / ridges, tips), scene.closure()
-    lengths = tips ** (1 / tip.power) * length / ridges
-    moduli, stiffening = tip.modulus(forces, lengths), _stiffening(scene, state, shear)
-    voltage = scene.volts if scene.drive is None else scene.drive.effective
-    try:
-        found = Cylinder(tip, moduli, scene.h_0, closure, stiffening).under_loads(forces, voltage)
-    except NoEquilibriumError as error:
-        why = "; ".join(filter(None, (str(error), sticking(closure, scene.volts))))
-        raise SceneError(f"{WORDS[state]} of the model 'cylinders': {why}") from None
+    own, force, law = pressed or press.of(scene), np.array(f_ext), scene.friction_law()
+    rolls = state == "full_slip" and law is not None and isinstance(own, Press) and not own.slid
+    length = own.length(f_ext, state) if isinstance(own, Press) else np.array([each.contact_length for each in own])
+
+    def solved(left: Any) -> tuple[NDArray[np.int_], list[RidgeState]]:
+        """Return how many ridges are in contact, and their states, with a part of the press's contact left."""
+        if isinstance(own, Press):
+            ridges = own.ridge_count(f_ext, state, left)
+        else:
+            ridges = np.array([each.ridges_in_contact for each in own])
+        return ridges, _ridges(scene, state, force / ridges, left * length / ridges, tips, shear)
+
+    if rolls and law is not None:
+        left = _left(law, force, np.zeros_like(force), length)
+        ridges, found = solved(left)
+        attraction, own_length = (
+            ridges * [getattr(ridge, key) for ridge in found] / left for key in ("f_attraction", "length")
+        )
+        left = _left(law, force, attraction, own_length)
+    ridges, found = solved(left if rolls else 1.0)
     states = []
     for each, count, ridge in zip(f_ext, ridges, found, strict=True):
         n = int(count)
@@ -212,6 +221,31 @@ def _over_forces(
         under = scene.model_copy(update={"f_ext": float(each)})
         states.append((reduced_state(under, contact, state == "full_slip"), ridge))
     return states
+
+
+def _left(law: Friction, force: Array, attraction: Array, length: Array) -> Array:
+    """Return the part of the contact of a press that is left at full slip (:mod:`fingerpad.reduced.press`).
+
+    Attraction (N/m) and length (m) are those of the whole contact, and grow with the part that is left.
+    """
+    left = np.ones_like(force)
+    for _ in range(_ROLLS):
+        f_t = np.array([law.resultant(*each) for each in zip(force + left * attraction, left * length, strict=True)])
+        left = np.maximum(1 - f_t**2 / (force * press.ROLL), _LEAST_LEFT)
+    return left
+
+
+def _ridges(scene: Scene, state: str, forces: Array, lengths: Array, tips: float, shear: float) -> list[RidgeState]:
+    """Return the states of ridges under external forces (N/m), with lengths in contact (m) without voltage."""
+    tip, closure = tip_of(scene.geometry, lengths, tips), scene.closure()
+    moduli = tip.modulus(forces, tips ** (1 / tip.power) * lengths)
+    voltage = scene.volts if scene.drive is None else scene.drive.effective
+    try:
+        ridge = Cylinder(tip, moduli, scene.h_0, closure, _stiffening(scene, state, shear))
+        return ridge.under_loads(forces, voltage)
+    except NoEquilibriumError as error:
+        why = "; ".join(filter(None, (str(error), sticking(closure, scene.volts))))
+        raise SceneError(f"{WORDS[state]} of the model 'cylinders': {why}") from None
 
 
 def _stiffening(scene: Scene, state: str, shear: float) -> Callable[[Array], Array] | None:
