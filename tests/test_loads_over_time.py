@@ -270,6 +270,7 @@ def test_friction_over_time_is_that_of_the_force():
     assert load.extremes["f_t"].max == pytest.approx(1.25 * MU_0, rel=1e-6)
     assert (load.extremes["f_ext"].min, load.over_time.mean["f_ext"]) == pytest.approx((0.75, 1.0), rel=1e-3)
     assert "In the load wave the friction force" in str(found)
+    assert "external force" in found.drawing.figure("time").axes[0].get_ylabel()
 
 
 def test_first_touch_has_no_estimated_errors():

@@ -26,7 +26,7 @@ _PICTURES = {
     "finger.png": "The deformed finger, and its strain energy density near the contact",
     "surface.png": "Pressure, shear traction, attraction and gap along the skin in the named states",
     "history.png": "Friction force, contact length and ridges in contact over sliding",
-    "time.png": "Voltage, friction force and contact length over time",
+    "time.png": "What is prescribed, friction force and contact length over time",
     "field.png": "Electric field between one ridge and the screen: upright, as between plates, the law's approximation",
     "footprint.png": "Gross contact (light), ridges (dark) and pressure, slice by slice",
     "solid.png": "The finger in three dimensions from its unloaded slices, from below; ridges by mean pressure",

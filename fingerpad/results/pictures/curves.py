@@ -17,6 +17,8 @@ from variational.state import ContactState
 
 Array = NDArray[np.float64]
 _MM, _MS, _UM, _KPA = 1e3, 1e3, 1e6, 1e-3
+_GIVEN = ("voltage", "f_ext", "bone_x")
+_FLAT = 1e-3  # of the largest amount: a change that is none
 _SHORT = 1.0  # s, below which the axis of time is in ms
 _RUBS = 1e-6  # of mu_0: a coefficient below is roundoff
 _TOOTH_SPAN = 4  # points: the span of a saw tooth to either side
@@ -242,7 +244,7 @@ def _draw_apparent(ax: Axes, x: Array, states: Sequence[ContactState], mu_0: flo
 
 # -- over time -------------------------------------------------------------------------------------------------
 def over_time(path: Path | str | None, states: Sequence[ContactState], title: str) -> Figure:
-    """Draw voltage, friction force and contact length over time.
+    """Draw voltage, force or place, whichever changes first, friction force and contact length over time.
 
     Args:
         path: of the PNG file; None for the figure alone.
@@ -252,10 +254,13 @@ def over_time(path: Path | str | None, states: Sequence[ContactState], title: st
     time = np.array([state.time for state in states])
     short = time[-1] - time[0] < _SHORT
     t = (_MS if short else 1.0) * time
+    later = np.array([[getattr(s, key) for key in _GIVEN] for s in states if s.time > time[0]] or np.zeros((1, 3)))
+    changes = np.ptp(later, axis=0) > _FLAT * np.abs(later).max(axis=0)
+    keys = _GIVEN[int(changes.argmax())], "f_t", "contact_length"
     with style.look():
         figure = style.figure(7.25, title)
         axes = style.column(figure, [1, 1, 1])
-        drawn = zip(axes, ("voltage", "f_t", "contact_length"), (style.VERMILION, style.BLACK, style.BLUE), strict=True)
+        drawn = zip(axes, keys, (style.VERMILION, style.BLACK, style.BLUE), strict=True)
         for ax, key, colour in drawn:
             _draw(ax, t, states, key, colour)
         words = "; dotted lines: part of the skin jumps" if _draw_jumps(axes, t, states) else ""
