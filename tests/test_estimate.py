@@ -105,6 +105,7 @@ def test_impossible_accuracy_is_refused(given, words):
         ((2e-3, None, 3e-3), 2),
         ((2e-3, 2e-3, 1e-3), 2),
         ((2e-3, 3e-3, 4e-3), 1),
+        ((None, None, {"waveform": "file", "times": [0, 1, 2], "values": [0, 1e-3, 0]}), 2),  # there and back
         ((None, None, None, 2e-3, None, 3e-3), 5),
     ],
 )

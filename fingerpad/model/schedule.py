@@ -63,7 +63,7 @@ def loads_to_normal_contact(loads: tuple[Load, ...]) -> tuple[Load, ...]:
         x = place if to is None else to
         if load.f_ext is not None or load.bone_height is not None:
             pressed = ends_of(load.f_ext)[1] > 0 or ends_of(load.bone_height)[0] < 0
-        if pressed and x != place:
+        if pressed and (x != place or isinstance(load.bone_x, Waveform)):
             return loads[:k]
         place = x
     return loads
