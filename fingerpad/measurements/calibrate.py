@@ -157,7 +157,10 @@ class _Problem:
             raise SceneError(f"{name} has {rows} to fit and fit has {len(self.keys)} keys; give at most as many keys")
         if self.spread is not None and not (isinstance(self.spread, int | float) and 0 < self.spread < math.inf):
             raise SceneError(f"spread is {show(self.spread)}; it must be a relative standard deviation above 0")
-        volts, charged = self.fitted.voltage.unique(), [k for k in self.keys if k.startswith(("electric.", "roughness."))]
+        volts, charged = (
+            self.fitted.voltage.unique(),
+            [k for k in self.keys if k.startswith(("electric.", "roughness."))],
+        )
         if len(volts) == 1 and charged and not self.fitted.quantity.isin(["air gap", "threshold ratio"]).any():
             at = "the scene's voltage" if math.isnan(volts[0]) else f"{volts[0]:g} V"
             raise SceneError(
@@ -168,7 +171,7 @@ class _Problem:
         self.spreads = (spreads if self.known else spreads.fillna(1.0)).to_numpy()
         if not (self.spreads > 0).all():
             line = self.rows.line[~(self.spreads > 0)].iloc[0]
-            raise SceneError(f"{name} has no spread above 0 in line {line}; give one there, or spread for all such rows")
+            raise SceneError(f"{name} has no spread above 0 in line {line}; give one, or spread for all such rows")
 
     def fit(self, scene: Scene, keys: Sequence[str], start: Array | None = None) -> tuple[ClosedForm, Estimate]:
         """Return the closed form over keys of a scene, and their estimate from a start.

@@ -6,10 +6,10 @@ Jacobian J at :math:`\theta`, the rows of a person are normal:
 
 .. math:: y_p \sim N(f_p(\theta),\; V_p), \qquad V_p = J_p \Omega J_p^T + \sigma^2 S_p ,
 
-with the rows' own variances S (the first-order method: Beal and Sheiner 1982, doi 10.3109/03639048209148783 is a review;
-Laird and Ware 1982, doi 10.2307/2529876, for the linear model). :math:`\theta` minimises the whitened squares and those
-of a normal prior (:func:`scipy.optimize.least_squares`); then :math:`\Omega` and, where it is not known,
-:math:`\sigma` maximise the restricted likelihood; the two are repeated. The evidence is Akaike's criterion for few rows,
+with the rows' own variances S (the first-order method, Sheiner and Beal 1980, doi 10.1007/BF01060053; of the linear
+model Laird and Ware 1982, doi 10.2307/2529876). :math:`\theta` minimises the whitened squares and those of a normal
+prior, by :func:`scipy.optimize.least_squares`. Then :math:`\Omega` and, where it is not known, :math:`\sigma` maximise
+the restricted likelihood, and the two are repeated. The evidence is Akaike's criterion for few rows,
 
 .. math:: AICc = -2 \ln L + 2 K + \frac{2 K (K + 1)}{n - K - 1}
 

@@ -235,9 +235,7 @@ def _of_file(file: str | Path) -> tuple[list[Column], dict[str, str], str]:
     return [column for column in found.columns if column.head], about, ends(file, _LONGEST_PATH)
 
 
-def _named(
-    heads: Sequence[Column], given: Mapping[str, str], names: Sequence[str] = _NAMES
-) -> dict[str, Column]:
+def _named(heads: Sequence[Column], given: Mapping[str, str], names: Sequence[str] = _NAMES) -> dict[str, Column]:
     """Return columns by their names in this program, with their units."""
     found = dict[str, Column]()
     if unknown := given.keys() - {column.head for column in heads}:
@@ -304,7 +302,7 @@ def _refuse_overlooked(used: Mapping[str, Column], ignored: Sequence[Column]) ->
 
 
 def _numbers(column: Column, si: str, optional: bool = False) -> "pd.Series[float]":
-    """Return the values of a column in SI units, NaN of an optional empty cell; a voltage as the rms value of a sine."""
+    """Return the values of a column in SI units, NaN of optional empty cells; a voltage as the rms value of a sine."""
     of, unit, rms = column.name, column.unit, 1.0
     if not unit:
         example = f"write '{of} ({si})' in the head or by columns, and (1) for a number without"

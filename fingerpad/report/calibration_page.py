@@ -41,9 +41,11 @@ def tables(found: "Calibration") -> Iterator[tuple[str, list[str], list[list[str
         yield "Participants", ["participant", *numbers], [[name, *row] for name, *row in numbers.itertuples()]
     for words, rows_of in (("Residuals, in σ", ~found.rows.held_out), ("Held out, in σ", found.rows.held_out)):
         if rows_of.any():
-            yield words, ["quantity", "values", "within the band", "mean", "rms", "largest"], [
-                [quantity, *_residuals(each)] for quantity, each in found.rows[rows_of].groupby("quantity")
-            ]
+            yield (
+                words,
+                ["quantity", "values", "within the band", "mean", "rms", "largest"],
+                [[quantity, *_residuals(each)] for quantity, each in found.rows[rows_of].groupby("quantity")],
+            )
     for kind, each in found.evidence.groupby("kind"):
         rows = [[r.name, *map(_number, (r.AICc, r.difference, r.weight)), r.values] for r in each.itertuples()]
         yield f"Evidence: {kind}", ["", "AICc", "above the least", "weight", "fitted values"], rows
