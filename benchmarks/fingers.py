@@ -24,7 +24,7 @@ from fingerpad.runs.batch import Summary
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.solve import find, solved
 from fingerpad.scene import Scene
-from fingerpad.scene.fingers import ADULT, FINGERS, Trait
+from fingerpad.scene.fingers import FINGERS, PAPER, Trait
 
 FORCE = 0.5  # N, about, on each finger
 VOLTAGE = 200.0  # V
@@ -38,7 +38,7 @@ _LIMIT = 1800.0  # s of processor time of a run
 def runs() -> dict[str, Scene]:
     """Return the scenes of the full model, under the force per length at the centre that makes up about 0.5 N."""
     found, quick = {}, {"receptors": False, "errors": False, "each_load": False}
-    for name in (ADULT, *(name for name in FINGERS if isinstance(similar(Scene(finger=name)), str))):
+    for name in (PAPER, *(name for name in FINGERS if isinstance(similar(Scene(finger=name)), str))):
         f_ext = float(f"{Scene(finger=name, force=FORCE).centre_force:.4g}")
         found[name] = Scene(finger=name, f_ext=f_ext, voltage=VOLTAGE, mesh=_COARSE, output=quick)
     return found

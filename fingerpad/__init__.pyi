@@ -20,6 +20,8 @@ from fingerpad.scene import SceneError as SceneError
 from variational.attraction.circuit import GapCircuit as GapCircuit
 from variational.attraction.dielectric import ColeCole as ColeCole
 from variational.attraction.dielectric import TabledTissue as TabledTissue
+from variational.contact.aging import Growing as Growing
+from variational.contact.aging import GrowingShear as GrowingShear
 from variational.contact.aging import Occlusion as Occlusion
 from variational.contact.aging import Speed as Speed
 from variational.contact.augmented import AugmentedLagrangian as AugmentedLagrangian

@@ -41,7 +41,7 @@ from fingerpad.results.quantities import MODEL
 from fingerpad.results.result import Result
 from fingerpad.results.states import WORDS
 from fingerpad.scene import Scene, SceneError
-from fingerpad.scene.fingers import ADULT
+from fingerpad.scene.fingers import PAPER
 from fingerpad.scene.messages import show
 from fingerpad.scene.remarks import coefficient, used
 from fingerpad.slices import errors
@@ -65,7 +65,7 @@ def _scaled(scene: Scene) -> Similar:
     """Return how the finger is scaled; refuse one that is not similar to the default finger."""
     found = similar(scene)
     if isinstance(found, str):
-        whose = "" if scene.finger == ADULT else f" of finger {show(scene.finger)}"
+        whose = "" if scene.finger == PAPER else f" of finger {show(scene.finger)}"
         raise SceneError(
             f"{found}{whose} is not that of the default finger or of one similar to it, whose contact length is known; "
             "take the model 'full', fingerpad run, a minute or two"

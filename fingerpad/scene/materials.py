@@ -32,7 +32,7 @@ from fingerpad.scene.viscosity import Viscosity, elastic
 from geometry import tags
 from geometry.parameters import Fingertip
 from geometry.units import Finite, Table, within
-from variational.contact.aging import Occlusion, Speed
+from variational.contact.aging import GrowingShear, Occlusion, Speed
 from variational.contact.friction import Coulomb, Derjaguin, Friction
 from variational.materials.material import Material
 from variational.materials.neo_hooke import NeoHooke
@@ -52,7 +52,7 @@ def _named(*laws: type) -> dict[str, type]:
 
 
 MATERIALS = Kind(Material, "a Material", _named(Ogden, NeoHooke, SaintVenant), Material.check)
-FRICTION_LAWS = Kind(Friction, "a Friction", _named(Coulomb, Derjaguin, Occlusion, Speed), Friction.check)
+FRICTION_LAWS = Kind(Friction, "a Friction", _named(Coulomb, Derjaguin, Occlusion, GrowingShear, Speed), Friction.check)
 CLOSURES = Kind(closure.Closure, "a Closure", _named(BearingArea, BoundaryElements, Persson), closure.check)
 """Laws of the package by kind: a new one is a line here."""
 LAYERS = {name.replace(" ", "_"): tag for name, tag in tags.LAYERS.items()}
