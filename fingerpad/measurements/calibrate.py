@@ -85,6 +85,7 @@ def calibrate(
     spread: float | None = None,
     columns: Mapping[str, str | None] | None = None,
     hold_out: Mapping[str, Any] | None = None,
+    evidence: bool = True,
     full: int = 3,
     out: str | Path | None = "results/calibration",
     jobs: int = 2,
@@ -99,6 +100,7 @@ def calibrate(
         spread: relative standard deviation of rows without one; by default it is estimated from the rows.
         columns: names of this program by heads of the table.
         hold_out: rows that are predicted and not fitted, by a condition in SI units: ``{"participant": 7}``.
+        evidence: whether other closures and friction laws are fitted too.
         full: number of conditions at which the full model is run at the fitted values.
         out: folder of ``scene.toml``, ``rows.csv``, ``report.html`` and the full runs, which are kept; None for no file
             and no full run.
@@ -112,7 +114,7 @@ def calibrate(
         check_folder(Path(out), "out")
     seen = observations(table, columns)
     held = _held(seen, hold_out or {})
-    found = _Problem(checked(scene).resolved(), tuple(fit), seen, held, spread).calibration()
+    found = _Problem(checked(scene).resolved(), tuple(fit), seen, held, spread).calibration(evidence)
     if out is None:
         return found
     found = with_full_runs(found, full, Path(out), jobs, quiet)
@@ -196,7 +198,7 @@ class _Problem:
             raise SceneError(f"{keys[effects.argmin()]} has no effect on any row of {self.seen.name}; fit without it")
         return form, found
 
-    def calibration(self) -> Calibration:
+    def calibration(self, evidence: bool) -> Calibration:
         """Return what the table says."""
         form, best = self.fit(self.scene, self.keys)
         error = np.sqrt(np.diag(best.covariance))
@@ -208,7 +210,7 @@ class _Problem:
         scene = form.at(best.theta)
         return Calibration(
             scene, values, correlation, pd.DataFrame(people, self.names[: len(people)], keys), self._rows(form, best),
-            math.nan if self.known else best.sigma, tuple(self._ties(best)), self._evidence(scene, best),
+            math.nan if self.known else best.sigma, tuple(self._ties(best)), self._evidence(scene, best, evidence),
             self.seen.state,
         )  # fmt: skip
 
@@ -234,10 +236,10 @@ class _Problem:
                 yield f"The table cannot tell apart {' and '.join(key for key, _ in named)}: {product} is {far}."
 
     # -- evidence ----------------------------------------------------------------------------------------------
-    def _evidence(self, scene: Scene, best: Estimate) -> pd.DataFrame:
+    def _evidence(self, scene: Scene, best: Estimate, wanted: bool) -> pd.DataFrame:
         """Return how well each closure and each friction law describes the rows, with its keys fitted."""
         found = []
-        for kind, name, other, keys in (*self._closures(scene), *self._friction_laws(scene)):
+        for kind, name, other, keys in (*self._closures(scene), *self._friction_laws(scene)) if wanted else ():
             row: dict[str, Any] = {"kind": kind, "name": name, "AICc": math.nan}
             try:
                 start = np.log([_value_of(other, key) for key in keys])

@@ -139,13 +139,13 @@ class Estimate:
 
     @cached_property
     def shifts(self) -> list[tuple[Array, Array]]:
-        """Of each person the expected difference b from the common parameters, and its covariance."""
+        """Of each person the expected difference b from the common parameters, and the covariance of their sum."""
         found = []
         for rows, factor in zip(self.data.people, self._factors(self.omega, self.sigma), strict=True):
-            both = np.column_stack([self.jacobian[rows] * self.omega**2, (self.data.y - self.fitted)[rows]])
-            solved = scipy.linalg.cho_solve((factor, True), both)
-            gain = (self.jacobian[rows] * self.omega**2).T
-            found.append((gain @ solved[:, -1], np.diag(self.omega**2) - gain @ solved[:, :-1]))
+            both = np.column_stack([self.jacobian[rows], (self.data.y - self.fitted)[rows]])
+            own = np.diag(self.omega**2) @ self.jacobian[rows].T @ scipy.linalg.cho_solve((factor, True), both)
+            left = np.eye(len(self.theta)) - own[:, :-1]
+            found.append((own[:, -1], left @ self.covariance @ left.T + left @ np.diag(self.omega**2)))
         return found
 
     def predicted(self, values: Array, jacobian: Array, spread: Array, person: int | None) -> tuple[Array, Array]:
@@ -157,9 +157,11 @@ class Estimate:
             spread: of the rows, by which ``sigma`` is multiplied.
             person: number of a person whose rows were fitted; None of another one, who adds the spread between people.
         """
-        shift, own = (0.0 * self.theta, np.diag(self.omega**2)) if person is None else self.shifts[person]
-        of_model = np.einsum("ik,kl,il->i", jacobian, self.covariance + own, jacobian)
-        return values + jacobian @ shift, np.sqrt(of_model + (self.sigma * spread) ** 2)
+        shift, of_both = 0.0 * self.theta, self.covariance + np.diag(self.omega**2)
+        if person is not None:
+            shift, of_both = self.shifts[person]
+        variance = np.einsum("ik,kl,il->i", jacobian, of_both, jacobian) + (self.sigma * spread) ** 2
+        return values + jacobian @ shift, np.sqrt(variance)
 
     @cached_property
     def criterion(self) -> float:
