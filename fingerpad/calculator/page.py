@@ -17,7 +17,7 @@ from typing import Any
 from numpy.polynomial.legendre import leggauss
 
 from fingerpad.launcher import version
-from fingerpad.reduced import cylinder_errors, cylinders, default_finger
+from fingerpad.reduced import cylinder_errors, cylinders, press
 from fingerpad.reduced.model import STATES
 from fingerpad.results.quantities import PER_LENGTH, Output
 from fingerpad.results.result import Result
@@ -101,6 +101,7 @@ def _in_unit(value: float, per: float) -> float:
 def data() -> dict[str, Any]:
     """Return all numbers that the page has from Python, ready for JSON; SI units but for those of the fields."""
     scene, shown = Scene(), [*fields()]
+    default = press.of(scene)
     nodes, weights = (each.tolist() for each in leggauss(scene.slices.count))
     return {
         "fields": [asdict(field) for field in shown],
@@ -110,10 +111,10 @@ def data() -> dict[str, Any]:
         "friction": scene.friction,
         "shear": cylinders.SHEAR,
         "largest_gap": LARGEST_GAP,
-        "forces": default_finger.FORCES,
-        "lengths": default_finger.LENGTHS,
-        "ridges": default_finger.RIDGES,
-        "indentations": default_finger.INDENTATIONS,
+        "forces": default.forces,
+        "lengths": default.lengths,
+        "ridges": default.ridges,
+        "indentations": default.indentations,
         "wavelength": scene.geometry.ridge_wavelength,
         "slices": {"radius": scene.slices.radius, "length": scene.slices.length, "nodes": nodes, "weights": weights},
         "traces": traces.CONSTANTS,
