@@ -21,6 +21,7 @@ from fingerpad.measurements.estimation import Data, Estimate, estimate, slopes
 from fingerpad.measurements.prediction import ClosedForm
 from fingerpad.measurements.table import Observations, observations
 from fingerpad.reduced.closure_band import closures, laws_like
+from fingerpad.reduced.cylinders import over_forces
 from fingerpad.report import calibration_page
 from fingerpad.results.files import below, check_folder
 from fingerpad.results.result import Result
@@ -40,6 +41,7 @@ _NO_EFFECT = 1e-6  # change of a row over that of a key, both relative
 _OPEN = math.log(2.0)  # standard error of a combination of keys that a table cannot tell apart
 _LIMIT = 4 * 3600.0  # s of processor time of a full run
 _CONDITIONS = ["force", "voltage", "frequency"]
+_EVIDENCE = ["kind", "name", "AICc", "values"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -175,22 +177,27 @@ class _Problem:
             line = self.rows.line[~(self.spreads > 0)].iloc[0]
             raise SceneError(f"{name} has no spread above 0 in line {line}; give one, or spread for all such rows")
 
-    def fit(self, scene: Scene, keys: Sequence[str], start: Array | None = None) -> tuple[ClosedForm, Estimate]:
-        """Return the closed form over keys of a scene, and their estimate from a start.
+    def fit(
+        self, scene: Scene, keys: Sequence[str], exponents: Mapping[str, Array] | None = None
+    ) -> tuple[ClosedForm, Estimate]:
+        """Return the closed form over keys of a scene, and their estimate from its values.
+
+        The prior is about the values that keys have at first. Other arguments are those of :class:`.ClosedForm`.
 
         Raises:
             SceneError: a key cannot be fitted, or the closed form has no answer at the scene.
         """
-        centre = np.log([_value_of(scene, key) for key in keys])
+        start = np.log([_value_of(scene, key) for key in keys])
+        centre = np.log([_value_of(self.scene if key in self.keys else scene, key) for key in keys])
         ends = np.log([(limits.low, limits.high) for limits in (_key(key).limits for key in keys)]).T
-        form = ClosedForm(scene, keys, self.rows, self.seen.state)
+        form = ClosedForm(scene, keys, self.rows, self.seen.state, exponents)
         form.rows(scene)  # refuses what has no answer
         bounds = np.maximum(ends[0], centre - _REACH), np.minimum(ends[1], centre + _REACH)
         people = [np.flatnonzero(self.fitted.participant == name) for name in self.names]
         y = np.log(self.fitted.measured.to_numpy())
         data = Data(y, self.spreads[~self.held], self.known, people, centre, PRIOR, bounds)
         try:
-            found = estimate(lambda x: form(x)[~self.held], centre if start is None else start, data)
+            found = estimate(lambda x: form(x)[~self.held], start, data)
         except ValueError as error:
             raise SceneError(f"the closed form has no answer near the scene, where it is varied: {error}") from None
         effects = abs(found.jacobian).max(axis=0)
@@ -201,6 +208,8 @@ class _Problem:
     def calibration(self, evidence: bool) -> Calibration:
         """Return what the table says."""
         form, best = self.fit(self.scene, self.keys)
+        if form.exponents:  # once more about the press of the fitted finger
+            form, best = self.fit(form.at(best.theta), self.keys, form.exponents)
         error = np.sqrt(np.diag(best.covariance))
         wide, keys = best.quantile * error, list(self.keys)
         ends = {"value": best.theta, "low": best.theta - wide, "high": best.theta + wide}
@@ -208,10 +217,10 @@ class _Problem:
         correlation = pd.DataFrame(best.covariance / np.outer(error, error), keys, keys)
         people = [np.exp(best.theta + shift) for shift, _ in best.shifts] if best.omega.any() else []
         scene = form.at(best.theta)
+        tried = self._evidence(scene, best, form.exponents) if evidence else pd.DataFrame(columns=_EVIDENCE)
         return Calibration(
             scene, values, correlation, pd.DataFrame(people, self.names[: len(people)], keys), self._rows(form, best),
-            math.nan if self.known else best.sigma, tuple(self._ties(best)), self._evidence(scene, best, evidence),
-            self.seen.state,
+            math.nan if self.known else best.sigma, tuple(self._ties(best)), tried, self.seen.state,
         )  # fmt: skip
 
     def _rows(self, form: ClosedForm, best: Estimate) -> pd.DataFrame:
@@ -236,19 +245,18 @@ class _Problem:
                 yield f"The table cannot tell apart {' and '.join(key for key, _ in named)}: {product} is {far}."
 
     # -- evidence ----------------------------------------------------------------------------------------------
-    def _evidence(self, scene: Scene, best: Estimate, wanted: bool) -> pd.DataFrame:
+    def _evidence(self, scene: Scene, best: Estimate, exponents: Mapping[str, Array]) -> pd.DataFrame:
         """Return how well each closure and each friction law describes the rows, with its keys fitted."""
         found = []
-        for kind, name, other, keys in (*self._closures(scene), *self._friction_laws(scene)) if wanted else ():
+        for kind, name, other, keys in (*self._closures(scene), *self._friction_laws(scene)):
             row: dict[str, Any] = {"kind": kind, "name": name, "AICc": math.nan}
             try:
-                start = np.log([_value_of(other, key) for key in keys])
-                fitted = best if other == scene and keys == self.keys else self.fit(other, keys, start)[1]
+                fitted = best if other == scene and keys == self.keys else self.fit(other, keys, exponents)[1]
                 row |= {"AICc": fitted.criterion, "values": ", ".join(map(shown, keys, np.exp(fitted.theta)))}
             except SceneError as error:
                 row["values"] = f"not fitted: {error}"
             found.append(row)
-        rows = pd.DataFrame(found, columns=["kind", "name", "AICc", "values"])
+        rows = pd.DataFrame(found, columns=_EVIDENCE)
         difference = rows.AICc - rows.groupby("kind").AICc.transform("min")
         weight = np.exp(-difference / 2)
         return rows.assign(difference=difference, weight=weight / weight.groupby(rows.kind).transform("sum"))
@@ -265,7 +273,7 @@ class _Problem:
         rest = tuple(key for key in self.keys if key.partition(".")[0] != "friction")
         if len(rest) < len(self.keys) and self.fitted.quantity.str.startswith("friction").any():
             section = scene.model_copy(update={"force": None})
-            (at,) = prediction.MODEL.over_forces(section, [section.f_ext], "full_slip", prediction.no_solve)
+            (at,) = over_forces(section, [section.f_ext], "full_slip")
             mu, stress = laws_like(scene.friction_law(), at.f_contact / at.contact_length)
             laws = {"Coulomb": (mu, ["friction"]), "shear stress": (stress, ["friction.tau_0"])}
             laws["both"] = Derjaguin(mu / 2, stress.tau_0 / 2), ["friction.mu_f", "friction.tau_0"]

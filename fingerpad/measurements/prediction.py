@@ -1,26 +1,33 @@
-"""What the closed form answers for the rows of a table of whole fingers, at other values of a scene's keys.
+r"""What the closed form answers for the rows of a table of whole fingers, at other values of a scene's keys.
 
 Each voltage has one trace of the cross-section per state (:mod:`fingerpad.slices.traces`), on which the force of each
 row is found. The air gap is that of the closure at the mean contact pressure of the finger's centre.
+
+Keys of shape, layers and contact change the press of the finger (:mod:`fingerpad.reduced.press`). Rows y are power laws
+of them about the scene's own values :math:`k_0`, with exponents from two presses each, 25 % to either side:
+
+.. math:: \ln y = \ln y(k_0) + \sum_k \frac{\partial \ln y}{\partial \ln k} \ln \frac{k}{k_0} .
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from fingerpad.reduced.cylinders import Cylinders
-from fingerpad.results.result import Result
+from fingerpad.reduced import press
+from fingerpad.reduced.cylinders import over_forces
 from fingerpad.runs.drive import thresholds
-from fingerpad.scene import Scene, with_values
+from fingerpad.runs.solve import find
+from fingerpad.scene import Scene, value_of, with_values
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.parameters import centre_force
 from fingerpad.slices.total import BeyondTrace, Total, at_force, at_indentation, profile
-from fingerpad.slices.trace import Trace
-from fingerpad.slices.traces import MARGIN
+from fingerpad.slices.trace import Trace, trace
+from fingerpad.slices.traces import MARGIN, grid
 
 Array = NDArray[np.float64]
 _CLOSE, _STEPS = 1e-9, 8  # of the logarithm of a force; steps of the secant method
@@ -29,14 +36,23 @@ SUMS = {"friction force": "f_t", "gross area": "gross_area", "contact area": "co
 _CONDITIONS = ["force", "voltage", "frequency", "state", "quantity"]
 
 
-MODEL = Cylinders()
-"""Of a cross-section."""
+MODEL = find("cylinders")
+PRESSED = ("geometry.", "materials.", "contact.")
+"""Tables of keys that change the press of a finger."""
+_PART = 0.25  # of the logarithm of such a key, to either side
 
 
 class ClosedForm:
     """Rows of a table as functions of keys of a scene."""
 
-    def __init__(self, scene: Scene, keys: Sequence[str], rows: pd.DataFrame, state: str) -> None:
+    def __init__(
+        self,
+        scene: Scene,
+        keys: Sequence[str],
+        rows: pd.DataFrame,
+        state: str,
+        exponents: Mapping[str, Array] | None = None,
+    ) -> None:
         """Take rows of :func:`fingerpad.measurements.table.observations`.
 
         Args:
@@ -44,12 +60,29 @@ class ClosedForm:
             keys: dotted, of numbers greater than 0.
             rows: with force, voltage, frequency and quantity.
             state: of quantities other than friction.
+            exponents: of the rows by key of a press; by default from two presses each.
+
+        Raises:
+            SceneError: the finger has no closed form, or its press fails.
         """
         self.scene, self.keys = scene, keys
+        MODEL.check(scene)  # has its finger pressed
+        self._press = press.of(scene)
         of = rows.assign(state=[state_of(quantity, state) for quantity in rows.quantity])[_CONDITIONS]
         self._different = of.drop_duplicates(ignore_index=True)
         self._row = of.groupby(_CONDITIONS, dropna=False, sort=False).ngroup().to_numpy()
         self._depths, self._further = dict[Any, float](), 1.0
+        found = exponents or {}
+        pressed = [key for key in keys if key.startswith(PRESSED)]
+        self.exponents = {key: found[key] if key in found else self._exponent(key, rows, state) for key in pressed}
+
+    def _exponent(self, key: str, rows: pd.DataFrame, state: str) -> Array:
+        """Return the exponents of the rows over a key of the press."""
+        value, ends = value_of(self.scene, key), list[Array]()
+        for factor in (math.exp(_PART), math.exp(-_PART)):
+            other = with_values(self.scene, {key: value * factor})
+            ends.append(ClosedForm(other, (), rows, state).rows(other))
+        return np.asarray((ends[0] - ends[1]) / (2 * _PART))
 
     def at(self, values: Array) -> Scene:
         """Return the scene with values of the keys, given as logarithms."""
@@ -57,10 +90,13 @@ class ClosedForm:
 
     def __call__(self, values: Array) -> Array:
         """Return the logarithms of the rows at logarithms of the keys; NaN without an answer."""
+        changes = dict(zip(self.keys, np.exp(values).tolist(), strict=True))
+        moved = {key: math.log(changes.pop(key) / value_of(self.scene, key)) for key in self.exponents}
         try:
-            return self.rows(self.at(values))
+            found = self.rows(with_values(self.scene, changes) if changes else self.scene)
         except SceneError:
             return np.full(len(self._row), np.nan)
+        return np.asarray(found + sum(self.exponents[key] * by for key, by in moved.items()))
 
     def rows(self, scene: Scene) -> Array:
         """Return the logarithms of the rows of a scene.
@@ -99,7 +135,11 @@ class ClosedForm:
             return found
 
     def _trace(self, scene: Scene, state: str, expected: float, top: float) -> Trace:
-        return MODEL.of_points(scene, no_solve, state, expected, top).trace
+        kind, scene = ("charged", under(scene, 0.0, math.nan)) if state == "uncharged" else (state, scene)
+        f_ext = grid(expected, top)
+        found = zip(over_forces(scene, f_ext, kind, self._press), self._press.indentation(f_ext, kind), strict=True)
+        states = [replace(each, bone_height=-float(depth)) for each, depth in found]
+        return trace(states, scene.geometry.ridge_wavelength)
 
     @staticmethod
     def _near(scene: Scene, trace: Trace, force: float, x: float | None) -> Total:
@@ -116,11 +156,6 @@ class ClosedForm:
             slope = (off - before[1]) / (x - before[0]) if step else slope  # type: ignore[operator]
             before, x = (x, off), x - off / slope  # type: ignore[assignment, operator]
         return at_force(finger, trace, force, count)
-
-
-def no_solve(scene: Scene) -> Result:
-    """Refuse to compute one state alone, which a closed form does not need."""
-    raise SceneError("a model that computes its states one by one is too slow for a calibration")
 
 
 def state_of(quantity: str, other: str) -> str:

@@ -312,7 +312,7 @@ def _numbers(column: Column, si: str, optional: bool = False) -> "pd.Series[floa
     allowed = {"N/m": "N/m, or in N for a whole finger", "N": "N, as another column is of a whole finger"}
     si = "1" if of == "spread" and unit in _PERCENT else si
     column = replace(column, unit=unit)
-    values = rms * column.numbers(si, allowed.get(si, "1 or %" if si == "1" else si), of == "spread")
+    values = rms * column.numbers(si, allowed.get(si, "1 or %" if si == "1" else si), optional or of == "spread")
     if of == "voltage":
         return values.abs()
     if of.startswith("friction"):
