@@ -240,7 +240,7 @@ class _Problem:
             if error > _OPEN:
                 powers = vector / vector[abs(vector).argmax()]
                 named = [(key, p) for key, p in zip(self.keys, powers, strict=True) if abs(p) > 0.1]
-                product = " × ".join(key if p == 1 else f"{key}^{p:.2g}" for key, p in named)
+                product = " × ".join(f"{key}^{p:.2g}".removesuffix("^1") for key, p in named)
                 far = "not known" if error > _REACH else f"known to a factor of {math.exp(error):.2g}"
                 yield f"The table cannot tell apart {' and '.join(key for key, _ in named)}: {product} is {far}."
 
