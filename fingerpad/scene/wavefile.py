@@ -1,12 +1,12 @@
 """Voltages over time from a CSV file with heads, as ``time (s),voltage (V)`` or as an oscilloscope writes it.
 
-Names and units of columns decide (:mod:`fingerpad.scene.tables`): the times are in the first column that is named or
-united as time. Without units they are in s, and the voltages in V. Times may begin anywhere: the first becomes 0.
+Names and units of columns decide (:mod:`fingerpad.scene.tables`): the times are in the first column with a unit of
+time, or with "time" or "t" for a name; the voltages in the only one with a unit of voltage, or in the only other one.
+Without units times are in s, and voltages in V. Times may begin anywhere: the first becomes 0.
 
-A file that repeats itself ends where a period does. One of 1.5 periods or more is cut to whole ones, another one must
-end with its first voltage, or one sample before. Where all periods have more than :data:`POINTS` samples, fewer of them
-are kept, one at least. Files of more than :data:`POINTS` samples are averaged in groups, all of as many. Where this
-would take more than :data:`_LOST` of the mean square, as of a carrier, the file is refused.
+A file that repeats itself has whole periods: it ends with its first voltage, or one sample before. Files of more than
+:data:`POINTS` samples are averaged in groups, all of as many. Where this would take more than :data:`_LOST` of the mean
+square, as of a carrier, the file is refused.
 """
 
 import math
@@ -40,10 +40,8 @@ Sample = tuple[float, float]
 """Time (s) since the start of a load, and voltage (V)."""
 Array = NDArray[np.float64]
 _HEADER = "time (s),voltage (V)"
-_TIME = re.compile(r"(time|zeit|temps|tiempo|tempo)\b.*|t|x([-_ ]?(axis|values?))?", re.IGNORECASE)
-_COUNT = re.compile(r"(samples?|ticks?|index|points?|number|no\.?|nr\.?|n|i|row|#|unnamed: \d+)?", re.IGNORECASE)
+_TIME = re.compile(r"time\b.*|t", re.IGNORECASE)
 _CLOSED = 0.02  # of the peak-to-peak value: a difference of the ends that is none
-_ALIKE = 0.05  # of the variance: half the mean square by which periods differ
 _SUDDEN = 0.01  # of the peak: a change of the voltage, within one sample before a piece of a table, that cuts the piece
 _OWN = 0.5  # of the piece's own change: a smaller change before it cuts no piece
 _TIME_TOLERANCE = 1e-9  # of a piece
@@ -67,7 +65,7 @@ def table(file: str, column: str | None = None, probe: float = 1.0, *, repeat: b
         file: its path.
         column: name of the voltages' column, with its unit as written there or without; None where there is one alone.
         probe: factor on the voltages.
-        repeat: whether the file repeats itself, so that it must end where a period does.
+        repeat: whether the file repeats itself, so that it must have whole periods.
 
     Raises:
         ValueError: it cannot be read, or has no such column, another unit, or a line without numbers in range; in one
@@ -85,7 +83,7 @@ def table(file: str, column: str | None = None, probe: float = 1.0, *, repeat: b
         )
         t, u = t - t[0], probe * u
         if repeat and len(t) > 1 and (np.diff(t) > 0).all():
-            t, u = _whole(t, u)
+            t, u = _closed(t, u)
         t, u = _fewer(t, u)
     except ValueError as error:
         raise ValueError(f"{name}, which {error}") from None
@@ -107,67 +105,35 @@ def _columns(found: "Table", wanted: str | None) -> "tuple[Column, Column]":
     if len(columns) < 2 or not found.headed:
         raise ValueError(f"has no two columns of numbers with heads; write '{_HEADER}' above them")
     among = clip(" or ".join(show(each.head) for each in columns), 100)
-    named = [each for each in columns if _TIME.fullmatch(each.name)]
     united = [each for each in columns if is_of(each.unit, "s")]
-    times = [each for each in named if each in united] or united or named
+    times = united or [each for each in columns if _TIME.fullmatch(each.name)]
     if not times:
         raise ValueError(f"has nothing named or united as time among {among}; write a head such as 'time (s)'")
-    others = [each for each in columns if each not in times and (each.unit or not _COUNT.fullmatch(each.name))]
+    others = [each for each in columns if each not in times]
     if not others:
         raise ValueError("has nothing in V beside its time")
-    volts = [each for each in others if is_of(each.unit or "V", "V")] or others
+    volts = [each for each in others if is_of(each.unit, "V")] or others
     if wanted is not None:
         name = wanted.strip().casefold()
         heads, names = ([each for each in others if getattr(each, key).casefold() == name] for key in ("head", "name"))
         volts = heads or names
     if len(volts) != 1:
         given = "not given" if wanted is None else show(wanted)
-        raise ValueError(f"has {among}, and column is {given}; it must be one of these, that of the voltages")
+        raise ValueError(f"has {among}, and column is {given}; it must be one of these")
     return times[0], volts[0]
 
 
-def _whole(t: Array, u: Array) -> tuple[Array, Array]:
-    """Return a record of whole periods: one that is cut, or goes on for a sample with its first voltage."""
-    steps, period, apart, end = np.diff(t), _period(t, u), abs(u[-1] - u[0]), t[-1]
-    if period is not None:
-        count = math.floor((t[-1] + 1.5 * steps.min()) / period)
-        end = max(1, min(count, math.floor(count * (POINTS - 1) / len(t)))) * period  # as many as need no means
-        end = t[-1] if abs(end - t[-1]) < 0.25 * steps.min() else end
-    elif steps.max() < 1.01 * steps.min() and _CLOSED * np.ptp(u) < apart <= 1.01 * np.abs(np.diff(u)).max():
-        end = t[-1] + steps[-1]
-    elif apart > _CLOSED * np.ptp(u):
-        raise ValueError(
-            f"begins with {u[0]:.4g} V and ends with {u[-1]:.4g} V after {t[-1]:.4g} s, without whole "
-            "periods; it repeats itself, so it must end with its first voltage"
-        )
-    kept = t < end - 0.25 * steps.min()
-    return np.append(t[kept], end), np.append(u[kept], np.interp(end, t, u, right=u[0] if end > t[-1] else u[-1]))
-
-
-def _period(t: Array, u: Array) -> float | None:
-    """Return the period (s) of a record of 1.5 periods or more, None of another one.
-
-    It is the least delay, past the first lobe, at which the record hardly differs from itself and varies; of several
-    periods a part of the delay over all of them, at which it differs least.
-    """
-    import scipy.optimize
-    import scipy.signal
-
-    v = np.interp(np.linspace(0.0, t[-1], POINTS), t, u)
-    apart = np.array([np.mean((v[k:] - v[:-k]) ** 2) for k in range(1, 2 * POINTS // 3)])
-    near = 1 + scipy.signal.find_peaks(-apart, height=-2 * _ALIKE * v.var())[0]
-    near = near[near > 1 + np.argmax(apart > v.var())]
-    found = [int(k) for k in near if min(v[k:].var(), v[:-k].var()) > v.var() / 4]
-    if not found:
-        return None
-    count, step = round(found[-1] / found[0]), t[-1] / (POINTS - 1)
-
-    def differ(delay: float) -> float:
-        early = t[t <= t[-1] - delay]
-        return float(np.mean((np.interp(early + delay, t, u) - u[: len(early)]) ** 2))
-
-    ends = (found[-1] - 1) * step, min((found[-1] + 1) * step, t[-1] - step)
-    return float(scipy.optimize.minimize_scalar(differ, bounds=ends, method="bounded").x) / count
+def _closed(t: Array, u: Array) -> tuple[Array, Array]:
+    """Return a record that ends with its first voltage; one that does so a sample later goes on for that sample."""
+    steps, apart = np.diff(t), abs(u[-1] - u[0])
+    if apart <= _CLOSED * np.ptp(u):
+        return t, u
+    if steps.max() < 1.01 * steps.min() and apart <= 1.01 * np.abs(np.diff(u)).max():
+        return np.append(t, t[-1] + steps[-1]), np.append(u, u[0])
+    raise ValueError(
+        f"begins with {u[0]:.4g} V and ends with {u[-1]:.4g} V after {t[-1]:.4g} s; it repeats itself, so cut it to "
+        "whole periods, which end with their first voltage"
+    )
 
 
 def _fewer(t: Array, u: Array) -> tuple[Array, Array]:
