@@ -2,8 +2,8 @@
 # # A finger by one's own table
 #
 # Friction forces over voltage give the friction coefficient of a finger and the roughness of its ridges. They cannot
-# tell the thickness of a coating from its permittivity. The table here is made by the closed form from known values, with 3 % of noise,
-# for six participants who differ in friction; so it is known what must come out.
+# tell the thickness of a coating from its permittivity. The table here is made by the closed form from known values,
+# with 3 % of noise, for six participants who differ in friction; so it is known what must come out.
 
 # %%
 import sys

@@ -1,4 +1,4 @@
-"""A calibration as text, and as a page with the fit over the data."""
+"""A calibration (:class:`fingerpad.measurements.calibrate.Calibration`) as text, and as a page with the fit."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -18,13 +18,11 @@ from fingerpad.scene.keys import by_name
 if TYPE_CHECKING:
     import pandas as pd
 
-    from fingerpad.measurements.calibrate import Calibration
-
 _UNITS = {"friction force": "N", "gross area": "mm²", "contact area": "mm²", "depth": "mm", "air gap": "µm"}
 _WIDE = 1.3  # rms of deviations, in spreads, from which on it is mentioned
 
 
-def tables(found: "Calibration") -> Iterator[tuple[str, list[str], list[list[str]]]]:
+def tables(found: Any) -> Iterator[tuple[str, list[str], list[list[str]]]]:
     """Yield title, heads and rows of each table of a calibration."""
     people, keys = not found.people.empty, by_name(Scene)
     heads = ["key", "value", "unit", "95 % region", *["between people"] * people]
@@ -74,7 +72,7 @@ def _shown(quantity: str, value: float) -> str:
     return f"{value * Output('', unit).scale:.4g} {unit}".rstrip()
 
 
-def remarks(found: "Calibration") -> list[str]:
+def remarks(found: Any) -> list[str]:
     """Return what a reader must know beside the tables."""
     fitted, held = found.rows[~found.rows.held_out], found.rows[found.rows.held_out]
     people = fitted.participant.nunique()
@@ -93,7 +91,7 @@ def remarks(found: "Calibration") -> list[str]:
     return [*lines, *(f"Full run failed at {each}." for each in found.failures)]
 
 
-def lines(found: "Calibration") -> list[str]:
+def lines(found: Any) -> list[str]:
     """Return a calibration as lines of text."""
     out = remarks(found)
     for title, heads, rows in tables(found):
@@ -118,7 +116,7 @@ def _chart(rows: "pd.DataFrame", quantity: str) -> Any:
     return chart([Panel(title, series, 220.0, zero=True)], "force (N)", f"{title} over the force")
 
 
-def write(found: "Calibration", folder: Path) -> None:
+def write(found: Any, folder: Path) -> None:
     """Write ``scene.toml``, ``rows.csv`` and ``report.html`` of a calibration into a folder."""
     folder.mkdir(parents=True, exist_ok=True)
     scene = "\n".join(html.scene_file(found.scene.parameters()))
