@@ -82,7 +82,7 @@ class Scene(Table):
     friction: Annotated[float | Friction, FRICTION] = 0.25
     """Friction coefficient mu_0 of skin on the screen, or a table of a law of friction."""
     finger: FingerName = "paper"
-    """Finger by its name (docs/assumptions.md). A given key wins over the name's. "paper" is the default finger.
+    """Finger by its name (docs/fingers.md). A given key wins over the name's. "paper" is the default finger.
     Its tissue and leak act under a drive; a constant voltage has no losses."""
     geometry: Geometry = Geometry()
     mesh: MeshSize = MeshSize()
