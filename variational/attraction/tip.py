@@ -20,9 +20,9 @@ With p = 2 both are the same. :func:`kernel` has k and p of a profile of cosines
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -40,9 +40,17 @@ class Tip(ABC):
     power: Any
     """p of the contact force over the length in contact."""
 
-    def __getitem__(self, chosen: NDArray[np.intp]) -> "Tip":
+    def __getitem__(self, chosen: NDArray[np.intp]) -> Self:
         """Return the tips of some loads."""
-        return self
+        return self._with(lambda _, value: value[chosen] if np.ndim(value) else value)
+
+    def scaled(self, factor: ArrayLike) -> Self:
+        """Return tips with all lengths on another scale, one for all loads or one for each."""
+        return self._with(lambda name, value: value if name == "power" else factor * value)
+
+    def _with(self, change: Callable[[str, Any], Any]) -> Self:
+        names = [each.name for each in fields(self)]  # type: ignore[arg-type]
+        return replace(self, **{name: change(name, getattr(self, name)) for name in names})  # type: ignore[type-var]
 
     @abstractmethod
     def modulus(self, f: ArrayLike, length: ArrayLike) -> Array:
@@ -68,7 +76,7 @@ class Tip(ABC):
 class Round(Tip):
     """A cylinder."""
 
-    radius: float
+    radius: float | Array
     """R (m)."""
     power = 2.0
 
@@ -98,10 +106,6 @@ class Power(Tip):
     """k_0 (m)."""
     half: Array
     """a_0 (m)."""
-
-    def __getitem__(self, chosen: NDArray[np.intp]) -> "Power":
-        """Return the tips of some loads."""
-        return Power(self.power[chosen], self.depth[chosen], self.half[chosen])
 
     def modulus(self, f: ArrayLike, length: ArrayLike) -> Array:
         """Return the modulus; the power law goes on to other lengths than that of the tip."""
