@@ -68,8 +68,8 @@ class Press:
     """Ridges in contact, likewise."""
     indentations: Mapping[str, tuple[float, ...]]
     """How far the bone is lowered (m), likewise."""
-    roll: float = ROLL
-    """F (N/m)."""
+    roll: float | Array = ROLL
+    """F (N/m); of similar fingers that are solved for together one of each."""
 
     @classmethod
     def of(cls, kept: Mapping[str, Any]) -> "Press":
@@ -89,7 +89,7 @@ class Press:
     def ridge_count(self, f_ext: ArrayLike, state: str, left: ArrayLike = 1.0) -> NDArray[np.int_]:
         """Return the number of ridges in contact, of which a part is left; arguments of :meth:`length`."""
         found = self.interpolate(f_ext, self.ridges.get(state, self.ridges["charged"]))
-        return np.maximum(np.rint(left * found).astype(int), 1)
+        return np.maximum(np.rint(np.asarray(left) * found).astype(int), 1)
 
     def indentation(self, f_ext: ArrayLike, state: str) -> Array:
         """Return how far the bone is lowered (m), without voltage; arguments of :meth:`length`.
