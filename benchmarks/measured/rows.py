@@ -82,7 +82,7 @@ def _area_form(case: Case, least: float, form: rules.Form, other: rules.Form) ->
     """Judge a form of the gross area over the force from a least one (N) on, beside another one."""
     force, area = case.finger.sums(case.finger.pressed, "gross_area", least)
     misfit, beside = (rules.of_each(each, force, area).misfit for each in (form, other))
-    exponent, error = _both(case.finger, lambda of: np.polyfit(*np.log(of.sums(of.pressed, "gross_area")), 1)[0])
+    exponent, error = _both(case.finger, lambda of: rules.exponent(*of.sums(of.pressed, "gross_area")))
     numbers = {"misfit": misfit, "other": beside, "exponent": float(exponent), "error": error, "most": force[-1]}
     return numbers, by_form((misfit,), (beside,))
 
@@ -222,7 +222,7 @@ def _mus(finger: Finger) -> tuple[Array, Array]:
 
 
 def _exponent(finger: Finger) -> float:
-    return float(np.polyfit(*np.log(_mus(finger)), 1)[0])
+    return rules.exponent(*_mus(finger))
 
 
 def _over_load(case: Case, judge: Callable[[Case, Array], str]) -> Row:
@@ -241,8 +241,7 @@ def _power_law(case: Case) -> Row:
     mu, force = case.finger.mu, np.array(case.finger.forces)
     misfit, line = (rules.of_each(form, force, mu).misfit for form in (rules.falling_power, rules.falling_line))
     verdict = by_form((misfit,), (line,)) if _factor(mu) > 1 + SIMILAR else rules.MISS
-    exponent = float(np.polyfit(np.log(force), np.log(mu), 1)[0])
-    return {"misfit": misfit, "line": line, "factor": _factor(mu), "exponent": exponent}, verdict
+    return {"misfit": misfit, "line": line, "factor": _factor(mu), "exponent": rules.exponent(force, mu)}, verdict
 
 
 def _speed(case: Case, wanted: bool) -> Row:

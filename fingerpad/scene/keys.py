@@ -13,6 +13,7 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from pydantic import BaseModel, WrapValidator
 
+from fingerpad.scene.controls import LoadKey
 from fingerpad.scene.law_keys import LawKey, keys_of, range_of
 from geometry.units import Range
 
@@ -66,7 +67,8 @@ def by_name(scene: type[BaseModel]) -> dict[str, Key]:
 def _of(model: type[BaseModel], table: str, instance: BaseModel | None) -> Iterator[Key]:
     inner, laws = [], list[tuple[str, LawKey, str]]()
     for name, field in model.model_fields.items():
-        parts = tuple(_parts(field.annotation)) + tuple(field.metadata)
+        own = next((part.annotation for part in field.metadata if isinstance(part, LoadKey)), field.annotation)
+        parts = tuple(_parts(own)) + tuple(field.metadata)
         law = next((part for part in parts if isinstance(part, LawKey)), None)
         if law is not None:
             meaning = _plain_text(field.description)
