@@ -20,6 +20,7 @@ ROOT = Path(__file__).resolve().parents[1]
 PAGES = {
     "accuracy": "benchmarks.accuracy",
     "assumptions": "benchmarks.assumptions",
+    "calibrate": "benchmarks.calibrate",
     "chart": "benchmarks.chart",
     "drive": "benchmarks.drive",
     "errors": "benchmarks.errors",
