@@ -2,14 +2,13 @@
 
 environment/run python3 -m benchmarks.calibrate [--draw]     also: make calibrate
 
-Writes docs/calibrate.json, and from it the numbers of docs/calibrate.md; half an hour. Tables are made by the closed
-form from known values, with normal noise on logarithms, from seeds. The last part makes tables by the full model.
+Writes docs/calibrate.json, and from it the numbers of docs/calibrate.md; a quarter of an hour. Tables are made by
+the closed form from known values, with normal noise on logarithms, from seeds.
 """
 
 import argparse
 import sys
 import time
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +16,7 @@ import numpy as np
 import pandas as pd
 
 import fingerpad as fp
-from benchmarks.harness import keep, kept, made, main, page, run
+from benchmarks.harness import keep, kept, made, main, page
 from fingerpad.measurements import prediction
 from fingerpad.measurements.table import observations
 
@@ -31,7 +30,6 @@ TRUTH = {  # of the five keys
 }  # fmt: skip
 LAWS = {"Coulomb": {"friction": 0.3}, "shear stress": {"friction": {"law": "Derjaguin", "mu_f": 0.0, "tau_0": 9e3}}}
 SPREADS = {"friction": 0.4, "roughness.h_rms": 0.15}  # between people, of logarithms
-FULL = [(0.2, 0.0), (0.2, 150.0), (0.8, 0.0), (0.8, 150.0)]  # N and V of tables by the full model
 
 
 def table(scene: fp.Scene, conditions: Any, quantities: Any, noise: float, rng: Any, **more: Any) -> pd.DataFrame:
@@ -114,36 +112,13 @@ def held_out() -> dict[str, Any]:
             "values": whole.values.reset_index(names="key").to_dict("records")}  # fmt: skip
 
 
-def by_full_model(args: argparse.Namespace) -> list[dict[str, Any]]:
-    """Return the keys found from tables whose friction is the full model's, with noise."""
-    truth = {"friction": 0.3, "roughness.h_rms": 3.4e-6}
-    scene = _scene(truth, fp.Scene())
-    scenes = {f"{f:g} N, {u:g} V": scene.replace(force=f, voltage=u) for f, u in FULL}
-    forces = [each["full_slip_finger_f_t"] for each in run(scenes, args, 4 * 3600.0).values()]
-    found = []
-    for seed in range(3):
-        noise = np.exp(NOISE * np.random.default_rng(seed).normal(size=len(FULL)))
-        rows = pd.DataFrame(FULL, columns=["force (N)", "voltage (V)"]).assign(**{QUANTITIES[0]: forces * noise})
-        values = fitted(rows, fp.Scene(force=0.5), truth, spread=NOISE, evidence=False).values
-        found.append({key: [v.low, v.value, v.high, truth[key]] for key, v in values.iterrows()})
-    return found
-
-
 def compute(args: argparse.Namespace) -> None:
     """Compute and keep the numbers."""
     numbers = dict[str, Any]()
-    for name, part in _parts(args):
-        print(f"{time.process_time():5.0f} s  {name}", flush=True)
-        numbers[name] = part()
+    for part in (again, held_out, choices, cover):
+        print(f"{time.process_time():5.0f} s  {part.__name__}", flush=True)
+        numbers[part.__name__] = part()
     keep("calibrate", numbers, made(), args.docs)
-
-
-def _parts(args: argparse.Namespace) -> Iterator[tuple[str, Any]]:
-    yield "again", again
-    yield "held_out", held_out
-    yield "choices", choices
-    yield "cover", cover
-    yield "full", lambda: by_full_model(args)
 
 
 def draw(docs: Path) -> Path:
