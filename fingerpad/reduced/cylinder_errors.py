@@ -161,7 +161,6 @@ def _given(scene: Scene, pull: float) -> dict[str, Any]:
     given.pop("f_ext" if scene.force is not None else "force", None)
     if scene.drive is None:
         given = {key: value for key, value in given.items() if not key.startswith(_LOSSES)}
-        given |= {key: value for key, value in _default().items() if key.startswith(_LOSSES)}
     return given
 
 
@@ -171,6 +170,7 @@ def _outside(given: Mapping[str, Any], region: Region) -> Iterator[Outside]:
     if "force" in given and "force" not in region.ranges:
         yield Outside("force", _span(given["force"], given["force"], units["force"]), "sections alone")
     tables = (key for key in {**default, **given} if key.partition(".")[0] in _TABLES)
+    tables = (key for key in tables if key in given or not key.startswith(_LOSSES))
     for key in dict.fromkeys([*region.ranges, *tables]):
         value, unit, table = given.get(key), units.get(key, ""), key.partition(".")[0]
         ends: tuple[Any, Any] = region.ranges.get(key, (default.get(key),) * 2)
