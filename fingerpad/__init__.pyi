@@ -15,6 +15,8 @@ from fingerpad.runs.sweep import sweep as sweep
 from fingerpad.runs.sweep_results import Sweep as Sweep
 from fingerpad.scene import Scene as Scene
 from fingerpad.scene import SceneError as SceneError
+from variational.attraction.adhesion import Adhesion as Adhesion
+from variational.attraction.adhesion import Dugdale as Dugdale
 from variational.attraction.circuit import GapCircuit as GapCircuit
 from variational.attraction.dielectric import ColeCole as ColeCole
 from variational.attraction.dielectric import TabledTissue as TabledTissue

@@ -139,6 +139,7 @@ class FingerModel:
         contact: formulation of the contact.
         by_gap: whether a ridge's length is that of a small gap, and not that under contact pressure.
         friction: law of friction; None without friction.
+        adhesion: law of adhesion without a voltage; None without.
         closure: the microscale; None where there is never a voltage.
         h_0: effective insulator thickness (m).
         loads: to reach one after the other, with voltages of Eq. 3.
@@ -163,6 +164,7 @@ class FingerModel:
         self.contact: Formulation = scene.contact.law
         self.by_gap = scene.contact.length == "gap"
         self.friction = scene.friction_law()
+        self.adhesion = scene.adhesion_law()
         self.closure = scene.closure() if options.voltage else None
         self.h_0 = scene.h_0
         self.loads = drive_loads.loads(scene)

@@ -82,8 +82,8 @@ class Load(Table):
     name: Annotated[str, AfterValidator(load_name)]
     """Name of the load, also of the load's pictures; see :mod:`fingerpad.scene.loads`."""
     f_ext: Annotated[Finite, within(1e-3, 5e3, "N/m", zero=True)] | None = None
-    """External normal force on the bone (N/m). Zero is allowed only under voltage, which then holds the skin on the
-    screen."""
+    """External normal force on the bone (N/m). Zero is allowed only under voltage or with adhesion, which then hold the
+    skin on the screen."""
     bone_height: Way | None = None
     """Change of the bone's height from the unloaded position (m), negative when pressed."""
     voltage: Voltage | None = None
@@ -198,7 +198,9 @@ def drives(voltage: float | Waveform, history: Sequence[Load]) -> dict[str, Wave
 
 
 # -- several ---------------------------------------------------------------------------------------------
-def refuse_contradictions(history: Sequence[Load], given: Mapping[str, Any], errors: bool, step_scale: float) -> None:
+def refuse_contradictions(
+    history: Sequence[Load], given: Mapping[str, Any], errors: bool, step_scale: float, adheres: bool
+) -> None:
     """Refuse the first contradiction between loads, or of them with other keys.
 
     Args:
@@ -206,6 +208,7 @@ def refuse_contradictions(history: Sequence[Load], given: Mapping[str, Any], err
         given: the values of :data:`fingerpad.scene.fingers.DEFAULT_HISTORY` that are given.
         errors: whether errors are estimated.
         step_scale: key of the numerics.
+        adheres: whether skin adheres without a voltage.
 
     Raises:
         ValueError: the keys, their values and the remedy.
@@ -233,7 +236,8 @@ def refuse_contradictions(history: Sequence[Load], given: Mapping[str, Any], err
                 "another name"
             )
     _refuse_times(history, step_scale)
-    _refuse_floating(history)
+    if not adheres:
+        _refuse_floating(history)
 
 
 def _refuse_floating(history: Sequence[Load]) -> None:

@@ -52,7 +52,8 @@ def coefficient(scene: "Scene") -> float | None:
 def used(scene: "Scene") -> dict[str, str]:
     """Return every law of a scene in words: its numbers in SI units, which are named where the law names them.
 
-    Keys are the layers, ``contact``, ``friction``, ``attraction`` and ``closure``, and ``mesh`` where one was given.
+    Keys are the layers, ``contact``, ``friction``, ``attraction`` and ``closure``, and ``adhesion`` and ``mesh`` where
+    one was given.
     """
     found = {layer: _words(getattr(scene.materials, layer)) for layer in LAYERS}
     found["contact"] = _words(scene.contact.law)
@@ -61,6 +62,8 @@ def used(scene: "Scene") -> dict[str, str]:
     charged = any(load.voltage for load in scene.loads())
     circuit = scene.electric.circuit(scene.geometry.sc_thickness)
     found["attraction"] = _call("electrostatic", {"h_0": scene.h_0}, _OF_SCENE) if charged else "none"
+    adhesion = scene.adhesion_law()
+    found |= {} if adhesion is None else {"adhesion": f"{_words(adhesion)}, {adhesion.work:.3g} J/m²"}
     found |= {} if circuit.lossless else {"circuit": circuit_in_words(circuit)}
     found["closure"] = _words(scene.roughness) if charged else "none"
     return found | ({} if scene.geometry.file is None else {"mesh": scene.geometry.file})

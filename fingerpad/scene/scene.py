@@ -20,11 +20,13 @@ from fingerpad.scene.law_code import digest, folder_of, imported
 from fingerpad.scene.law_keys import UnresolvedLaw, kept
 from fingerpad.scene.loads import Load, Voltage, drives, refuse_contradictions, repeated
 from fingerpad.scene.materials import (
+    ADHESION,
     BEARING_AREA,
     CLOSURES,
     FRICTION,
     LAYERS,
     MATERIALS,
+    NO_ADHESION,
     ROUGHNESS,
     Materials,
     refuse_thickness,
@@ -45,6 +47,7 @@ from fingerpad.scene.viscosity import elastic, refuse_beside, viscous_layers
 from fingerpad.scene.waveform import Waveform
 from geometry.parameters import MeshSize
 from geometry.units import Finite, Table, computed, within
+from variational.attraction.adhesion import Adhesion
 from variational.contact.friction import Friction, law_of
 from variational.materials.material import Material
 from variational.roughness.closure import Closure
@@ -80,6 +83,9 @@ class Scene(Table):
     """Loads to reach one after the other, at most 1000, in place of the default press, charge and slide."""
     friction: Annotated[float | Friction, FRICTION] = 0.25
     """Friction coefficient mu_0 of skin on the screen, or a table of a law of friction."""
+    adhesion: Annotated[Adhesion, ADHESION] = NO_ADHESION
+    """Adhesion of skin to the screen without a voltage: a table of a law of adhesion. It acts beside the electrostatic
+    attraction. By default there is none."""
     finger: FingerName = "adult"
     """Finger by its name (docs/assumptions.md). A given key wins over the name's. "adult" is the default finger.
     Its tissue and leak act under a drive; a constant voltage has no losses."""
@@ -125,7 +131,8 @@ class Scene(Table):
             self.accuracy.refuse(self.output.receptors, self.friction)
         if self.history is not None:
             steps = math.inf if self.electric.follows == "mean" else self.numerics.step_scale
-            refuse_contradictions(self.history, given, self.output.errors, steps)
+            adheres = isinstance(self.adhesion, UnresolvedLaw) or self.adhesion.work > 0
+            refuse_contradictions(self.history, given, self.output.errors, steps, adheres)
         if self.force is not None and isinstance(self.friction, Friction) and self.friction.memory is not None:
             raise ValueError(
                 "force is given and friction has a memory, and the sum of slices has no common time; give f_ext or a "
@@ -193,7 +200,8 @@ class Scene(Table):
     def laws(self) -> dict[str, Any]:
         """Return what each key has that holds a law: an object, or the number of a friction coefficient."""
         layers = {f"materials.{name}": elastic(getattr(self.materials, name)) for name in LAYERS}
-        return {"friction": self.friction, "roughness": self.roughness, "contact": self.contact.law} | layers
+        found = {"friction": self.friction, "adhesion": self.adhesion, "roughness": self.roughness}
+        return found | {"contact": self.contact.law} | layers
 
     def own_laws(self) -> dict[str, Any]:
         """Return the laws of one's own by key."""
@@ -233,6 +241,11 @@ class Scene(Table):
     def friction_law(self) -> Friction | None:
         """Return the law of friction, None without friction; raises as :meth:`closure` does."""
         return law_of(_known("friction", self.friction))
+
+    def adhesion_law(self) -> Adhesion | None:
+        """Return the law of adhesion without a voltage, None without; raises as :meth:`closure` does."""
+        law: Adhesion = _known("adhesion", self.adhesion)
+        return law if law.work else None
 
     def solids(self) -> dict[int, Material]:
         """Return the material of each layer's tag; raises as :meth:`closure` does."""

@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.parameters import Slices
-from fingerpad.slices.trace import Trace
+from fingerpad.slices.trace import Trace, borne
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.floating[Any]]
@@ -172,9 +172,8 @@ class Total:
     @property
     def pressure(self) -> Array:
         """Mean contact pressure of each slice over its contact length (Pa), shape (slices,)."""
-        borne = self.columns["f_ext"] + self.columns["f_electrostatic"]
-        length = self.columns["contact_length"]
-        return np.divide(borne, length, out=np.zeros_like(borne), where=length > 0)
+        force, length = borne(self.columns), self.columns["contact_length"]
+        return np.divide(force, length, out=np.zeros_like(force), where=length > 0)
 
     def slices(self) -> dict[str, Array]:
         """Return all values of the slices by name; m, N/m and Pa, shape (slices,)."""
