@@ -111,8 +111,14 @@ NEWTONS = Entry(
     "fingerpad.slices.estimate:with_newtons",
     lambda r, _: r.follows_path and r.finger is None,
 )
+PULL_OFF = Entry(
+    "the pull-off force",
+    "fingerpad.slices.pull_off:with_pull_off",
+    lambda r, _: r.follows_path and bool(r.steps) and r.scene.adhesion_law() is not None,
+)
 POST: list[Entry] = [
     NEWTONS,
+    PULL_OFF,
     SUMS,
     BANDS,
     cautions_on(),

@@ -288,7 +288,7 @@ class Scene(Table):
         else:
             found["geometry"] = {key: x for key, x in found["geometry"].items() if not key.startswith("file")}
         if self.slices.height is not None:
-            del found["slices"]["radius"], found["slices"]["length"]
+            del found["slices"]["radius"], found["slices"]["length"], found["slices"]["shape"]
         return found
 
     def _repr_html_(self) -> str:

@@ -152,7 +152,7 @@ class Trace:
 
 
 def borne(columns: dict[str, Array]) -> Array:
-    """Return what slices bear of a trace's columns (N/m): force, electrostatic attraction, and adhesion if they have it."""
+    """Return what slices bear of a trace's columns (N/m): force, electrostatic attraction, and adhesion if there."""
     return columns["f_ext"] + columns["f_electrostatic"] + columns.get(ADHESION, 0.0)
 
 

@@ -37,6 +37,11 @@ class Adhesion(Law, ABC):
         """Work of adhesion w (J/m²)."""
         return -float(self.potential(0.0))
 
+    @property
+    def reach(self) -> float:
+        """Distance (m) to which it acts: the work over the attraction in contact."""
+        return self.work / float(self.pressure(0.0))
+
     def check(self) -> None:
         """Refuse what is no law of adhesion.
 
