@@ -268,6 +268,8 @@ FINGER = _listed(
     ("f_adhesion", "N", "adhesion of the whole finger without a voltage", "adhesion F_ad", 4),
     ("gross_area", "mm²", "area between the outermost touching ridges of the slices", "gross area", 1),
     ("contact_area", "mm²", "area in contact, of the ridges", "ridge contact area", 2),
+    ("real_over_gross", "", "contact area of the ridges over the gross area", "ridge over gross area", 3),
+    ("shear_stress", "kPa", "friction force over the contact area of the ridges", "shear stress on ridges", 1),
     ("indentation", "mm", "lowering of the bone since the finger first touched", "indentation δ", 3),
     (
         "effective_width", "mm", "external force of the finger over that of its centre, the slice that touches first",
@@ -291,10 +293,23 @@ SLICES = _listed(
     ("contact_length", "m", "length of the slice in contact, of the ridges"),
     ("gross_width", "m", "width between the outermost touching ridges of the slice"),
     ("pressure", "Pa", "mean contact pressure of the slice over its length in contact"),
+    ("real_over_gross", "", "length of the slice in contact over its gross width"),
+    ("shear_stress", "Pa", "friction force of the slice over its length in contact"),
     trace="f_ext f_t f_electrostatic contact_length gross_width",
 )
 """Of the slices of a whole finger."""
-OUTPUTS: tuple[Output, ...] = ()
+RATIOS = {"real_over_gross": ("contact_area", "gross_area"), "shear_stress": ("f_t", "contact_area")}
+"""Quantities of the whole finger that are ratios of two sums over its slices. Their relative error is that of both."""
+OUTPUTS: tuple[Output, ...] = (
+    Output(
+        "stuck_share", "", lambda state: 1 - state.slipping, "part of the points in contact that stick",
+        "stuck share of the contact", tables=(),
+    ),
+    Output(
+        "shear_stress", "kPa", lambda state: abs(state.f_t) / state.contact_length if state.contact_length else 0.0,
+        "friction force over the contact length", "shear stress on ridges", 1, tables=("result",),
+    ),
+)  # fmt: skip
 """Outputs of the package that are computed from a state, as those of a user are. A new one is an entry here."""
 
 _ORDER = "f_ext voltage mu_app f_t f_electrostatic f_contact contact_length p_max ridges_in_contact".split()

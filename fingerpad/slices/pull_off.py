@@ -2,8 +2,8 @@ r"""The force that pulls an adhering finger off the screen: of the section, and 
 
 A section that was pressed and is lifted has a force over the height of its bone, which is least, and negative, shortly
 before the last ridge lets go. In the sum :math:`F(\delta) = \int w f(h / w) \,dz` each slice that was pressed
-follows that curve from where it is. The pull-off force is the least of F. *Assumption*: slices that were pressed less lift
-along the same curve, though their ridges adhere over less of their width.
+follows that curve from where it is. The pull-off force is the least of F. *Assumption*: slices that were pressed less
+lift along the same curve, though their ridges adhere over less of their width.
 """
 
 from dataclasses import replace

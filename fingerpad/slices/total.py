@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq
 
+from fingerpad.results.quantities import RATIOS
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.parameters import Slices
 from fingerpad.slices.trace import Trace, borne
@@ -214,7 +215,8 @@ class Total:
     def values(self) -> dict[str, float]:
         """The sums with what follows from them: N, m², m, and the apparent friction coefficient."""
         width = self.totals["f_ext"] / self.centre
-        return self.totals | {"mu_app": self.mu_app, "indentation": self.delta, "effective_width": width}
+        ratios = {name: self.totals[a] / self.totals[b] for name, (a, b) in RATIOS.items()}
+        return self.totals | {"mu_app": self.mu_app, "indentation": self.delta, "effective_width": width} | ratios
 
     @property
     def pressure(self) -> Array:
@@ -225,7 +227,10 @@ class Total:
     def slices(self) -> dict[str, Array]:
         """Return all values of the slices by name; m, N/m and Pa, shape (slices,)."""
         places = {"z": self.z, "thickness": self.thickness, "indentation": self.depth}
-        return places | self.columns | {"pressure": self.pressure}
+        column = {sum_: name for name, sum_ in AREAS.items()}
+        of = {name: [self.columns[column.get(each, each)] for each in pair] for name, pair in RATIOS.items()}
+        ratios = {name: np.divide(a, b, out=np.zeros_like(a), where=b > 0) for name, (a, b) in of.items()}
+        return places | self.columns | {"pressure": self.pressure} | ratios
 
 
 def at_indentation(profile: Profile, trace: Trace, delta: float, count: int) -> Total:
