@@ -2,8 +2,8 @@
 
 environment/run python3 -m benchmarks.fingers [--draw]     also: make fingers; two minutes of processor time
 
-The closed form has the fingers that are similar to the default one. The others are run by the full model, on coarse
-elements, and so is the default finger beside its closed form. Writes docs/fingers.json, numbers of docs/assumptions.md
+The closed form has all of them, by a press of each. Those with a press of their own are run by the full model, too, on
+coarse elements, and so is the default finger. Writes docs/fingers.json, numbers of docs/assumptions.md
 and a picture.
 """
 
@@ -18,13 +18,13 @@ from matplotlib.figure import Figure
 
 import fingerpad as fp
 from benchmarks import harness
-from fingerpad.reduced.default_finger import Similar, similar
+from fingerpad.reduced import press
 from fingerpad.results.pictures import style
 from fingerpad.runs.batch import Summary
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.solve import find, solved
 from fingerpad.scene import Scene
-from fingerpad.scene.fingers import ADULT, FINGERS, Trait
+from fingerpad.scene.fingers import FINGERS, PAPER, Trait
 
 FORCE = 0.5  # N, about, on each finger
 VOLTAGE = 200.0  # V
@@ -38,7 +38,7 @@ _LIMIT = 1800.0  # s of processor time of a run
 def runs() -> dict[str, Scene]:
     """Return the scenes of the full model, under the force per length at the centre that makes up about 0.5 N."""
     found, quick = {}, {"receptors": False, "errors": False, "each_load": False}
-    for name in (ADULT, *(name for name in FINGERS if isinstance(similar(Scene(finger=name)), str))):
+    for name in (PAPER, *(each for each in FINGERS if press.name(Scene(finger=each)) != press.name(Scene()))):
         f_ext = float(f"{Scene(finger=name, force=FORCE).centre_force:.4g}")
         found[name] = Scene(finger=name, f_ext=f_ext, voltage=VOLTAGE, mesh=_COARSE, output=quick)
     return found
@@ -54,15 +54,13 @@ def compute(args: argparse.Namespace) -> None:
 
 
 def _closed(name: str) -> dict[str, Any]:
-    """Return the friction of a finger by the closed form, None where that has no contact of it."""
+    """Return the friction of a finger by the closed form."""
     scene = Scene(finger=name, force=FORCE, voltage=VOLTAGE)
-    found: dict[str, Any] = {"mu_0": scene.friction, "h_0": scene.h_0, "closed": None}
-    found |= {"leak": str(scene.electric.leak), "driven": None, "needs": None, "needs_driven": None}
-    if isinstance(similar(scene), Similar):
-        drive = scene.replace(voltage={"waveform": "sine", "rms": VOLTAGE, "frequency": FREQUENCY})
-        found |= {"closed": _friction(scene), "driven": _friction(drive)}
-        for key, over, each in (("needs", "voltage", scene), ("needs_driven", "voltage.rms", drive)):
-            (found[key],) = fp.solve(each, over, mu_app=1 + CONTRAST / 100, relative=True, between=[1.0, _UP_TO]).values
+    found: dict[str, Any] = {"mu_0": scene.friction, "h_0": scene.h_0, "leak": str(scene.electric.leak)}
+    drive = scene.replace(voltage={"waveform": "sine", "rms": VOLTAGE, "frequency": FREQUENCY})
+    found |= {"closed": _friction(scene), "driven": _friction(drive)}
+    for key, over, each in (("needs", "voltage", scene), ("needs_driven", "voltage.rms", drive)):
+        (found[key],) = fp.solve(each, over, mu_app=1 + CONTRAST / 100, relative=True, between=[1.0, _UP_TO]).values
     return found
 
 

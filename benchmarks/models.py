@@ -18,7 +18,7 @@ import numpy as np
 
 from benchmarks import harness
 from benchmarks.runs import FORCES, VOLTAGES, trace
-from fingerpad.reduced import cylinder_errors, cylinders, default_finger
+from fingerpad.reduced import cylinder_errors, cylinders, press
 from fingerpad.results.quantities import RESULTS
 from fingerpad.runs.batch import Summary
 from fingerpad.scene import Scene
@@ -83,7 +83,7 @@ def in_the_program(kept: Mapping[str, Any]) -> str:
     """Return the tables of :mod:`fingerpad.reduced.cylinders` and the known errors as kept numbers have them."""
     runs = [kept["scenes"][name(f, 0.0)]["full"]["summary"] for f in FORCES]
     lines = []
-    for state in default_finger.LENGTHS:
+    for state in press.of(Scene()).lengths:
         lengths, ridges, heights = (
             [run[f"{state}_{key}"] for run in runs] for key in ("contact_length", "ridges_in_contact", "bone_height")
         )
@@ -92,7 +92,7 @@ def in_the_program(kept: Mapping[str, Any]) -> str:
         lines += [f"INDENTATIONS {state}: {', '.join(f'{-1e3 * each:.4f}e-3' for each in heights)}"]
     every = [*kept["scenes"].values(), *kept["held_out"].values()]
     known = cylinder_errors.REGIONS[0].errors
-    for key in (f"{state}_{quantity}" for state in default_finger.LENGTHS for quantity in known[state]):
+    for key in (f"{state}_{quantity}" for state in press.of(Scene()).lengths for quantity in known[state]):
         errors = [_error(found, key) for found in every if value(found, "cylinders", key)]
         off = [abs(1 / (1 + each / 100) - 1) for each in errors if each is not None]  # over the printed value
         lines += [f"KNOWN_ERROR {key}: {np.ceil(1e3 * max(off) - _ROUNDOFF) / 1e3:.3f}"]

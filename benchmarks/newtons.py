@@ -19,7 +19,7 @@ from matplotlib.figure import Figure
 from benchmarks import harness
 from benchmarks.models import name
 from benchmarks.runs import FORCES, VOLTAGES
-from fingerpad.reduced import default_finger
+from fingerpad.reduced import press
 from fingerpad.results.pictures import style
 from fingerpad.results.quantities import RESULTS
 from fingerpad.scene import Scene
@@ -52,7 +52,7 @@ def states(scenes: Found, model: str, voltage: float, state: str) -> list[Contac
         summary = scenes[name(f_ext, voltage)][model]["summary"]
         values = {key: summary[f"{state}_{key}"] for key in RESULTS if f"{state}_{key}" in summary}
         if model == "cylinders":
-            values["bone_height"] = -default_finger.indentation(f_ext, state)
+            values["bone_height"] = -float(press.of(Scene()).indentation(f_ext, state))
         found.append(ContactState(f_ext=f_ext, voltage=voltage, **values))
     return found
 

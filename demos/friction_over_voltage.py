@@ -19,7 +19,8 @@ from matplotlib.figure import Figure
 import fingerpad as fp
 from fingerpad.reduced.cylinders import tip_radius
 from fingerpad.startup import MPI
-from variational.attraction.cylinder import Cylinder, hertz_modulus
+from variational.attraction.cylinder import Cylinder
+from variational.attraction.tip import Round
 
 MU_0 = 0.25
 SMALL = Path(__file__).parent / "scenes" / "small_finger.toml"
@@ -38,9 +39,9 @@ def beside(voltage: float, scene: fp.Scene) -> tuple[float, float]:
     result = fp.run(scene)
     slip, press = result.full_slip, result.uncharged
     assert abs(slip.f_t - MU_0 * slip.f_contact) < 1e-6 * slip.f_ext
-    n, radius = press.ridges_in_contact, tip_radius(scene.geometry)
-    modulus = hertz_modulus(radius, scene.f_ext / n, press.contact_length / n).item()
-    (ridge,) = Cylinder(radius, modulus, scene.h_0, scene.closure()).under_loads([scene.f_ext / n], voltage)
+    n, tip = press.ridges_in_contact, Round(tip_radius(scene.geometry))
+    modulus = tip.modulus(scene.f_ext / n, press.contact_length / n).item()
+    (ridge,) = Cylinder(tip, modulus, scene.h_0, scene.closure()).under_loads([scene.f_ext / n], voltage)
     return slip.mu_app, MU_0 * n * ridge.f_contact / scene.f_ext
 
 

@@ -4,12 +4,16 @@ import geometry as geometry
 from fingerpad import afferents as afferents
 from fingerpad.measurements.compare import compare as compare
 from fingerpad.model.body import Body as Body
+from fingerpad.reduced.closed_form import ClosedForm as ClosedForm
+from fingerpad.reduced.closed_form import closed_form as closed_form
+from fingerpad.reduced.press import Press as Press
 from fingerpad.results.quantities import Output as Output
 from fingerpad.results.result import Result as Result
 from fingerpad.runs.drive import Drive as Drive
 from fingerpad.runs.drive import drive as drive
 from fingerpad.runs.inverse import Solution as Solution
 from fingerpad.runs.inverse import solve as solve
+from fingerpad.runs.press import press as press
 from fingerpad.runs.solve import run as run
 from fingerpad.runs.sweep import sweep as sweep
 from fingerpad.runs.sweep_results import Sweep as Sweep

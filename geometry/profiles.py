@@ -88,7 +88,7 @@ class Profiles:
         return np.asarray(1 - t**3 * (10 - 15 * t + 6 * t**2), dtype=float)
 
     @cached_property
-    def _ridge_series(self) -> Array:
+    def harmonics(self) -> Array:
         """Cosine coefficients of the ridge's height above its mean, with the given peak-to-peak amplitude."""
         c = np.asarray(self.finger.ridge_profile, dtype=float)
         shape = np.cos(np.outer(_PHASES, np.arange(1, len(c) + 1))) @ c
@@ -96,8 +96,8 @@ class Profiles:
 
     def _wave(self, theta: ArrayLike) -> Array:
         """Height of a ridge above its mean at the phase theta."""
-        harmonics = np.arange(1, len(self._ridge_series) + 1)
-        return np.asarray(np.cos(np.asarray(theta)[..., None] * harmonics) @ self._ridge_series, dtype=float)
+        harmonics = np.arange(1, len(self.harmonics) + 1)
+        return np.asarray(np.cos(np.asarray(theta)[..., None] * harmonics) @ self.harmonics, dtype=float)
 
     def _ridge_height(self, s: ArrayLike) -> Array:
         theta = 2 * np.pi * np.asarray(s, dtype=float) / self.finger.ridge_wavelength
@@ -148,10 +148,10 @@ class Profiles:
 
     def radius(self, s: ArrayLike) -> Array:
         """Return the radius of curvature (m) of the skin at arc lengths from a ridge's middle, infinite where none."""
-        harmonics = 2 * np.pi / self.finger.ridge_wavelength * np.arange(1, len(self._ridge_series) + 1)
+        harmonics = 2 * np.pi / self.finger.ridge_wavelength * np.arange(1, len(self.harmonics) + 1)
         phases = np.asarray(s, dtype=float)[..., None] * harmonics
-        slope = np.sin(phases) @ (harmonics * self._ridge_series)
-        bend = np.abs(np.cos(phases) @ (harmonics**2 * self._ridge_series))
+        slope = np.sin(phases) @ (harmonics * self.harmonics)
+        bend = np.abs(np.cos(phases) @ (harmonics**2 * self.harmonics))
         return np.asarray(np.divide((1 + slope**2) ** 1.5, bend, out=np.full_like(bend, np.inf), where=bend > 0))
 
     @property

@@ -32,7 +32,7 @@ from fingerpad.cli import refuse
 from fingerpad.cli.arguments import Parser, scene_of
 from fingerpad.model import options
 from fingerpad.model.options import by_rule, refuse_sizes
-from fingerpad.reduced.cylinders import tip_radius
+from fingerpad.reduced.cylinders import tip_of
 from fingerpad.results.files import check_folder
 from fingerpad.scene import Scene, SceneError
 from tests import fuzz_files
@@ -265,7 +265,8 @@ def _unready(scene: Scene) -> str:
         return f"air gaps {gaps}"
     try:
         horny = scene.materials.stratum_corneum
-        ridge = Cylinder(tip_radius(scene.geometry), 2 * horny.shear_modulus / (1 - horny.poisson), scene.h_0, closure)
+        tip = tip_of(scene.geometry, np.array([scene.geometry.ridge_wavelength / 4]))
+        ridge = Cylinder(tip, 2 * horny.shear_modulus / (1 - horny.poisson), scene.h_0, closure)
         voltages = (load.wave.peak if load.wave else load.level or 0.0 for load in scene.loads())
         ridge.under_loads([max(load.f_ext or 1.0 for load in scene.loads()) / 9], max(voltages))[0]
     except (NoEquilibriumError, SceneError) as error:

@@ -107,6 +107,16 @@ def test_closures_without_a_table(result):
     assert list(found) == ["bearing area", "Persson's theory", "Persson's theory, no field in contact"]
 
 
+def test_closures_of_a_fitted_finger_have_its_air_gap():
+    """2 µm where a ridge bears 18 kPa, within 1 %; a height that was given is that of all of them."""
+    fitted = fp.Scene(finger="fitted")
+    found = closure_band.closures(fitted.closure(), "fitted")
+    assert len(found) == 5
+    assert [float(law(18e3).d_eq) for law in found.values()] == pytest.approx([2e-6] * 5, rel=0.01)
+    given = fitted.replace(roughness={"h_rms": 3e-6})
+    assert {law.h_rms for law in closure_band.closures(given.closure(), "fitted").values()} == {3e-6}
+
+
 # -- closures of rough contact in scenes, height maps, the command microscale and sweeps -----------------------------
 @pytest.mark.parametrize("law", ["BoundaryElements", "Persson"])
 def test_scene_and_back(law):

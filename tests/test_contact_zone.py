@@ -1,4 +1,4 @@
-"""Where omitted ridges may touch the run starts again with them, and is the run that had them all along."""
+"""Where omitted ridges may touch the run goes on with them, and ends as the run that had them all along."""
 
 import json
 from dataclasses import replace
@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
+import fingerpad as fp
 from fingerpad.model import options
 from fingerpad.model.checks import FingerExceeded
 from fingerpad.model.options import by_rule
@@ -17,6 +18,7 @@ from fingerpad.scene import from_data
 from geometry.sizing import touching_ridges
 from tests.measures import rows_of
 from tests.runs import path_of, run
+from tests.test_resume import scene
 from variational.solvers.stability import Stability, StabilityCheck
 
 pytestmark = pytest.mark.slow
@@ -37,20 +39,24 @@ def columns(folder, name: str) -> list[dict[str, str]]:
     return [{k: v for k, v in row.items() if k != "processor_seconds"} for row in rows_of(folder, name)]
 
 
-@pytest.fixture(scope="module")
-def restarted(tmp_path_factory):
-    """A run whose finger can touch with three ridges at first."""
-    folder = tmp_path_factory.mktemp("restarted")
-    return folder, press(folder, 0.6e-3)
+def test_press_goes_on_with_more_ridges(tmp_path):
+    """No step is taken twice, and the force is that of the wider mesh: what friction kept is interpolated, to 0.1 %."""
+    wider, straight = (press(tmp_path / name, arc) for name, arc in (("wider", 0.6e-3), ("straight", 1.4e-3)))
+    assert wider["restarts"] == [] and "the path goes on with" in (tmp_path / "wider" / "run.log").read_text()
+    rows = rows_of(tmp_path / "wider", "steps")
+    assert [int(row["step"]) for row in rows] == list(range(1, len(rows) + 1))
+    assert wider["unknowns"] == straight["unknowns"]
+    assert float(rows[-1]["f_ext"]) == pytest.approx(
+        float(rows_of(tmp_path / "straight", "steps")[-1]["f_ext"]), rel=1e-3
+    )
+    assert wider["factorisations"] < 2 * straight["factorisations"]
 
 
-def test_restarted_run_is_the_one_that_had_the_ridges(restarted, tmp_path):
-    """Step for step and digit for digit; nothing is left of the steps before."""
-    folder, summary = restarted
-    straight = press(tmp_path, summary["restarts"][0]["touching_half_arc"])
-    assert straight["restarts"] == [] and straight["factorisations"] == summary["factorisations"]
-    for name in ("steps", "ridges", "receptors", "coupling"):
-        assert columns(folder, name) == columns(tmp_path, name), name
+def test_slide_goes_on_with_more_ridges(tmp_path):
+    """Full slip does not depend on the path: the same to the solves' tolerance, whose air gaps are good to 1e-6."""
+    wider, straight = (fp.run(scene("more ridges", mesh={"touching_half_arc": arc})) for arc in (0.1e-3, 1.0e-3))
+    assert wider.record["restarts"] == [] and wider.record["path_mesh"]["touching_half_arc"] > 0.1e-3
+    assert wider.full_slip.f_t == pytest.approx(straight.full_slip.f_t, rel=1e-6)
 
 
 # -- skin beyond the last ridge ----------------------------------------------------------------------------

@@ -10,7 +10,8 @@ from scipy.integrate import quad
 
 from benchmarks.verification.adhesion import maugis_force, maugis_ratio
 from benchmarks.verification.microscale import H_0, air_gap_at_external, scalar
-from variational.attraction.cylinder import Cylinder, NoEquilibriumError, hertz_modulus
+from variational.attraction.cylinder import Cylinder, NoEquilibriumError
+from variational.attraction.tip import Round
 from variational.roughness.bam import BearingArea
 from variational.roughness.closure import AirGap, Closure
 
@@ -35,17 +36,17 @@ class Wide(Cylinder):
 
 
 def ridge(closure=None) -> Cylinder:
-    return Cylinder(RADIUS, MODULUS, H_0, closure or BearingArea(H_0))
+    return Cylinder(Round(RADIUS), MODULUS, H_0, closure or BearingArea(H_0))
 
 
 @pytest.mark.parametrize("f", [0.01, 1.0, 10.0])
 def test_uncharged_cylinder_is_hertz(f):
-    """f = pi E* a^2 / 4R, and hertz_modulus is its inverse."""
+    """f = pi E* a^2 / 4R, and the modulus of a tip is its inverse."""
     state = ridge().under_loads([f], 0.0)[0]
     assert state.length == pytest.approx(2 * np.sqrt(4 * RADIUS * f / (np.pi * MODULUS)), rel=1e-9)
     assert state.p_c == pytest.approx(f / state.length, rel=1e-9)
     assert state.f_attraction == 0
-    assert hertz_modulus(RADIUS, f, state.length) == pytest.approx(MODULUS, rel=1e-9)
+    assert Round(RADIUS).modulus(f, state.length) == pytest.approx(MODULUS, rel=1e-9)
 
 
 @pytest.mark.parametrize("f", [0.01, 1.0, 10.0])
@@ -75,7 +76,7 @@ def test_wide_contact_is_the_closure_table(p_ext, voltage):
     Tolerance: the attraction reaches (delta R / a^2)^(2/3) = 4e-8 of the width beyond the ends; the gain of the loop
     over the scales makes that some times larger.
     """
-    (state,) = Wide(RADIUS, MODULUS, H_0, BearingArea(H_0)).under_loads([10 * p_ext], voltage)
+    (state,) = Wide(Round(RADIUS), MODULUS, H_0, BearingArea(H_0)).under_loads([10 * p_ext], voltage)
     d_eq, p_c, _ = scalar(p_ext, voltage)
     assert state.d_eq == pytest.approx(d_eq, rel=1e-6)
     assert state.p_c == pytest.approx(p_c, rel=1e-6)
@@ -85,10 +86,10 @@ def test_wide_contact_is_the_closure_table(p_ext, voltage):
 def test_modulus_that_grows_with_pressure(voltage):
     """The state is that of the constant modulus which it has at its own pressure."""
     forces, growth = [0.1, 3.0], 4.0
-    grown = Cylinder(RADIUS, MODULUS, H_0, BearingArea(H_0), lambda p_c: growth * p_c)
+    grown = Cylinder(Round(RADIUS), MODULUS, H_0, BearingArea(H_0), lambda p_c: growth * p_c)
     for f, state in zip(forces, grown.under_loads(forces, voltage), strict=True):
         modulus = MODULUS + growth * state.p_c
-        same = Cylinder(RADIUS, modulus, H_0, BearingArea(H_0)).under_loads([f], voltage)[0]
+        same = Cylinder(Round(RADIUS), modulus, H_0, BearingArea(H_0)).under_loads([f], voltage)[0]
         assert (state.length, state.p_c) == pytest.approx((same.length, same.p_c), rel=1e-9)
         assert state.length < ridge().under_loads([f], voltage)[0].length
 
@@ -99,7 +100,7 @@ def test_branch_in_contact_is_taken_and_the_others_are_named():
     Tolerance as for the wide contact.
     """
     closure = BearingArea(H_0, p_floor=1.0)
-    (state,) = Wide(RADIUS, MODULUS, H_0, closure).under_loads([500.0], VOLTAGE)
+    (state,) = Wide(Round(RADIUS), MODULUS, H_0, closure).under_loads([500.0], VOLTAGE)
     assert state.d_eq == pytest.approx(air_gap_at_external(closure, 50.0, VOLTAGE), rel=1e-6)
     assert len(state.others) == 2
     assert max(state.others) < closure.contact_pressure(closure.pull_off_fold(VOLTAGE)) < state.p_c

@@ -4,10 +4,13 @@ import numpy as np
 import pytest
 
 from benchmarks import harness, models, newtons
-from fingerpad.reduced import cylinder_errors, cylinders, default_finger
+from fingerpad.reduced import cylinder_errors, cylinders, press
 from fingerpad.scene import Scene, from_data, with_values
 from tests.commands import kept
 from variational.contact.friction import Derjaguin
+
+OWN = press.of(Scene())
+"""The default finger's."""
 
 
 def test_known_error_is_that_of_the_kept_runs():
@@ -123,20 +126,20 @@ def test_lengths_in_the_program_are_the_runs():
     for state in ("charged", "full_slip"):
         for k, f in enumerate(models.FORCES):
             run = known[models.name(f, 0.0)]["full"]["summary"]
-            assert default_finger.LENGTHS[state][k] == pytest.approx(run[f"{state}_contact_length"], abs=0.5e-7)
-            depth = default_finger.INDENTATIONS[state][k]
+            assert OWN.lengths[state][k] == pytest.approx(run[f"{state}_contact_length"], abs=0.5e-7)
+            depth = OWN.indentations[state][k]
             assert depth == pytest.approx(-run[f"{state}_bone_height"], abs=0.5e-7)
-            assert default_finger.RIDGES[state][k] == run[f"{state}_ridges_in_contact"]
+            assert OWN.ridges[state][k] == run[f"{state}_ridges_in_contact"]
 
 
 def test_lengths_between_known_forces_are_a_power_law():
     """Halfway on logarithmic axes, between each force and the next; beyond the last as between the two before."""
-    forces, known = default_finger.FORCES, default_finger.LENGTHS["charged"]
+    forces, known = OWN.forces, OWN.lengths["charged"]
     for k, between in enumerate(np.sqrt(np.array(forces[1:]) * np.array(forces[:-1]))):
         lengths = known[k : k + 2]
-        assert default_finger.interpolate(between, known) == pytest.approx(np.sqrt(np.prod(lengths)))
+        assert OWN.interpolate(between, known) == pytest.approx(np.sqrt(np.prod(lengths)))
     ratio = known[1] / known[0]
-    below = default_finger.interpolate(forces[0] ** 2 / forces[1], known)
+    below = OWN.interpolate(forces[0] ** 2 / forces[1], known)
     assert below == pytest.approx(known[0] / ratio)
 
 

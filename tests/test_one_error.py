@@ -8,8 +8,8 @@ import pytest
 import xarray
 
 import fingerpad as fp
-from fingerpad.reduced import cylinder_errors
-from fingerpad.reduced.cylinders import indentation, over_forces
+from fingerpad.reduced import cylinder_errors, press
+from fingerpad.reduced.cylinders import over_forces
 from fingerpad.results.printing import cells
 from fingerpad.results.quantities import FINGER
 from fingerpad.scene.parameters import Slices
@@ -88,7 +88,8 @@ def test_longer_trace_has_the_same_sum():
     def under(top):
         forces = grid(70.0, top)
         states = over_forces(fp.Scene(voltage=200.0), forces, SLIP)
-        made = trace([replace(s, bone_height=-indentation(s.f_ext, SLIP)) for s in states], 0.4e-3)
+        depth = press.of(fp.Scene()).indentation(forces, SLIP)
+        made = trace([replace(s, bone_height=-d) for s, d in zip(states, depth, strict=True)], 0.4e-3)
         return at_force(profile(Slices()), made, 0.5, 16).values["mu_app"]
 
     assert under(75.0) == pytest.approx(under(300.0), rel=1e-12)

@@ -39,7 +39,7 @@ HISTORIES = {
     "bone height": ([{"name": "press", "bone_height": -0.2e-3}, CHARGE, SLIDE], {}),
     "Nitsche": ([PRESS, CHARGE, SLIDE], {"contact": {"formulation": "nitsche"}}),
     "augmented": ([PRESS, CHARGE, SLIDE], {"contact": {"formulation": "augmented"}}),
-    "more ridges": ([PRESS, CHARGE, SLIDE], {"mesh": {"touching_half_arc": 0.5e-3}}),  # all loads again
+    "more ridges": ([PRESS, CHARGE, SLIDE], {"mesh": {"touching_half_arc": 0.1e-3}}),  # added on the way
     "receptors": ([PRESS, CHARGE, SLIDE], {"output": {"receptors": True, "errors": True}}),
     "receptors over time": ([PRESS, WAVE], {"output": {"receptors": True}, "materials": VISCOUS}),
     "drive": (None, {"f_ext": 2.0, "voltage": DRIVE, "electric": LOSSY}),

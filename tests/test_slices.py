@@ -9,7 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import fingerpad as fp
-from fingerpad.reduced.cylinders import indentation
+from fingerpad.reduced import press
 from fingerpad.results.pictures.solid import _strips, footprint, solid
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.parameters import Slices
@@ -219,7 +219,7 @@ def test_finger_in_three_dimensions_has_the_ridges_of_its_slices(tmp_path):
 def slip_alone(**changes: object) -> fp.Result:
     """Full slip at the centre, as a point of a sweep of full slip alone has it."""
     slip = fp.run(model="cylinders").full_slip
-    slip = replace(slip, bone_height=-indentation(slip.f_ext, "full_slip"), error=Errors())
+    slip = replace(slip, bone_height=-float(press.of(fp.Scene()).indentation(slip.f_ext, "full_slip")), error=Errors())
     return with_newtons(fp.Result(fp.Scene(**changes), "full", None, None, slip))
 
 

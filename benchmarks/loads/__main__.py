@@ -6,7 +6,7 @@ A scene is a force on the finger, a voltage, a friction coefficient and a coatin
 sequence in these five keys. Its full slip is followed over growing forces of the section, up to that at the centre of
 the finger. So a scene has errors of the section at several forces, and one of the sum over slices. States are solved
 for from neighbours, without a path. Writes docs/loads.json, docs/closed_form.md, its picture, and the known errors into
-fingerpad/reduced/cylinder_errors.json; prints the contact lengths that fingerpad/reduced/default_finger.py has of them,
+fingerpad/reduced/cylinder_errors.json; prints the contact lengths that fingerpad/reduced/presses.json has of them,
 and the number of shear of fingerpad/reduced/cylinders.py.
 """
 
@@ -40,7 +40,7 @@ from benchmarks.loads.meshes import errors, without
 from benchmarks.loads.scenes import COUNT, MESHES, Data, scenes, section
 from benchmarks.loads.shear import fitted, points
 from benchmarks.loads.states import by_scene, pressed, short, solved
-from fingerpad.reduced import default_finger
+from fingerpad.reduced import press
 from fingerpad.reduced.cylinder_errors import REGIONS, WHOLE, find
 from fingerpad.reduced.cylinders import SHEAR
 from fingerpad.results.files import replace
@@ -82,13 +82,14 @@ def far(numbers: Mapping[str, Any]) -> dict[str, dict[str, list[float]]]:
     They are the tables' last value of a full run, times the ratio of states on the coarser mesh.
     """
     found: dict[str, dict[str, list[float]]] = {}
-    k = default_finger.FORCES.index(_LAST)
-    for state, lengths in default_finger.LENGTHS.items():
+    own = press.of(Scene())
+    k = own.forces.index(_LAST)
+    for state, lengths in own.lengths.items():
         first, *others = numbers["far"][state]
         found[state] = {
             "lengths": [lengths[k] * each["contact_length"] / first["contact_length"] for each in others],
             "indentations": [
-                default_finger.INDENTATIONS[state][k] * each["bone_height"] / first["bone_height"] for each in others
+                own.indentations[state][k] * each["bone_height"] / first["bone_height"] for each in others
             ],
             "ridges": [each["ridges_in_contact"] for each in others],
         }
@@ -96,7 +97,7 @@ def far(numbers: Mapping[str, Any]) -> dict[str, dict[str, list[float]]]:
 
 
 def in_the_program(numbers: Mapping[str, Any]) -> str:
-    """Return what fingerpad.reduced.default_finger has of kept numbers."""
+    """Return what the default finger's press has of kept numbers."""
     lines = []
     for state, each in far(numbers).items():
         for key in ("lengths", "indentations"):

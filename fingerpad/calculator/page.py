@@ -3,14 +3,13 @@
 Keys of a scene have their bounds and defaults from the scene itself. What is said here of a field is how it is shown:
 its words, its unit and the ends of its slider, within its bounds.
 
-A preset sets keys of a scene that the page has a field of. A finger that changes other keys, such as its shape, is not
-one that the closed form answers for, and is left out.
+A preset is a coating. The page has the default finger alone: other names of fingers have other shapes.
 """
 
 import html
 import json
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, replace
 from importlib.resources import files
 from typing import Any
@@ -18,16 +17,14 @@ from typing import Any
 from numpy.polynomial.legendre import leggauss
 
 from fingerpad.launcher import version
-from fingerpad.reduced import cylinder_errors, cylinders, default_finger
+from fingerpad.reduced import cylinder_errors, cylinders, press
 from fingerpad.reduced.model import STATES
 from fingerpad.results.quantities import PER_LENGTH, Output
 from fingerpad.results.result import Result
 from fingerpad.results.states import WORDS
 from fingerpad.scene import Scene
-from fingerpad.scene.fingers import FINGERS, NamedFinger
 from fingerpad.scene.keys import by_name
 from fingerpad.scene.materials import BEARING_AREA, LARGEST_GAP
-from fingerpad.scene.reading import flat
 from fingerpad.scene.remarks import LEAKAGE
 from fingerpad.slices import traces
 from geometry.units import Range
@@ -104,6 +101,7 @@ def _in_unit(value: float, per: float) -> float:
 def data() -> dict[str, Any]:
     """Return all numbers that the page has from Python, ready for JSON; SI units but for those of the fields."""
     scene, shown = Scene(), [*fields()]
+    default = press.of(scene)
     nodes, weights = (each.tolist() for each in leggauss(scene.slices.count))
     return {
         "fields": [asdict(field) for field in shown],
@@ -113,10 +111,10 @@ def data() -> dict[str, Any]:
         "friction": scene.friction,
         "shear": cylinders.SHEAR,
         "largest_gap": LARGEST_GAP,
-        "forces": default_finger.FORCES,
-        "lengths": default_finger.LENGTHS,
-        "ridges": default_finger.RIDGES,
-        "indentations": default_finger.INDENTATIONS,
+        "forces": default.forces,
+        "lengths": default.lengths,
+        "ridges": default.ridges,
+        "indentations": default.indentations,
         "wavelength": scene.geometry.ridge_wavelength,
         "slices": {"radius": scene.slices.radius, "length": scene.slices.length, "nodes": nodes, "weights": weights},
         "traces": traces.CONSTANTS,
@@ -236,38 +234,13 @@ SCREENS = (
 """Coatings of screens."""
 
 
-_CIRCUIT = ("electric.tissue", "electric.leak")  # act at an alternating voltage only
-
-
-def presets(keys: Collection[str]) -> tuple[Preset, ...]:
-    """Return all presets whose keys the page has.
-
-    Args:
-        keys: of the page's fields.
-    """
-    found = (_finger(name, each, keys) for name, each in FINGERS.items())
-    return (*SCREENS, *(each for each in found if each is not None))
-
-
-def _finger(name: str, finger: NamedFinger, keys: Collection[str]) -> Preset | None:
-    """Return a finger as a preset, with the default of each key that another finger changes; None of another shape."""
-    values = {key: value for key, value in finger.values.items() if key not in _CIRCUIT}
-    if not set(values) <= set(keys):
-        return None
-    default = flat(Scene().parameters())
-    same = {key: default[key] for each in FINGERS.values() for key in each.values if key in keys}
-    source = ". ".join(dict.fromkeys(trait.source for trait in finger.traits)) or "The finger of the paper"
-    words = f"{finger.words}. {source}. {finger.remark}".rstrip()
-    return Preset("Finger", name, same | values, words)
-
-
 def _preset_data(scales: Mapping[str, float]) -> Iterator[dict[str, Any]]:
     """Yield the presets ready for JSON, in the units of the fields.
 
     Args:
         scales: units in one SI unit, by the keys of the fields.
     """
-    for each in presets(scales):
+    for each in SCREENS:
         values = {key: float(f"{value * scales[key]:.12g}") for key, value in each.values.items()}
         source = f"{each.name[0].upper()}{each.name[1:]}: {each.source}"
         yield {"group": each.group, "name": each.name, "values": values, "source": source}

@@ -210,10 +210,6 @@ class HalfFinger:
         """What leads the half."""
         return self._body.continuation
 
-    def run(self, target: Target) -> None:
-        """Reach a target, see :meth:`variational.solvers.continuation.Continuation.run`; collective."""
-        self._body.continuation.run(target)
-
     def free(self) -> None:
         """Free the memory that the half's solver takes, which cannot be used any more; collective."""
         self._body.solver.iteration.free()
@@ -240,7 +236,11 @@ class HalfFinger:
         return np.concatenate(self._comm.allgather(mine))
 
     def _accepted(self, target: Target, part: float, attempt: Attempt) -> bool:
-        """Put the half's accepted state on the finger."""
+        self.show()
+        return self._on_accept(target, part, attempt)
+
+    def show(self) -> None:
+        """Put the half's accepted state on the finger; collective."""
         half, whole = self._body.coupling, self._finger.coupling
         solver = whole.solver
         solver.new_load(replace(half.solver.control), float(half.solver.problem.voltage.value))
@@ -251,7 +251,7 @@ class HalfFinger:
         solver.problem.elapse(float(solver.problem.dt.value))
         solver.take(w, half.solver.bone, self._together(half.solver.pressure)[self._pressures])
         self._finger.continuation.accept()
-        return self._on_accept(target, part, attempt)
+        self._finger.continuation.steps = self.path.steps
 
 
 def _pressure_places(problem: Problem) -> Array:

@@ -158,15 +158,20 @@ class Report:
         found = {name: getattr(self.record, name) for name in _PICTURED}
         return found | {"shown": self._shown, "logged": self._logged, "log": self._writer.log_text()}
 
-    def resume(self, states: list[ContactState], kept: Mapping[str, Any], done: float) -> None:
-        """Go on from the states that another process accepted and from what it kept, on every rank; collective."""
+    def resume(self, states: list[ContactState], kept: Mapping[str, Any], done: float, listed: bool) -> None:
+        """Go on from the states that another process accepted and from what it kept, on every rank; collective.
+
+        Where this process has ``listed`` them, they are of another mesh, and the motion of the finger begins anew.
+        """
         self._writer.earlier_log = kept["log"]
         self._writer.take()
         self.record.states, self._logged, self._shown = states, kept["logged"], kept["shown"]
         if self._simulation.finger.problem.mesh.comm.rank == 0:
             for name in _PICTURED:
                 setattr(self.record, name, kept[name])
-        for state in self.record.states:
+        if listed:
+            self.record.moved = {}
+        for state in self.record.states if not listed else ():
             self._show(state, done)
 
     def motion(self) -> dict[str, Any]:

@@ -19,18 +19,25 @@ from fingerpad.scene import Load
 from variational.resultants import RidgeLoads
 from variational.solvers import checkpoint
 from variational.solvers.continuation import Attempt, Continuation, StepFailed
+from variational.solvers.outcome import Counts, Timings
 from variational.solvers.stability import Stability
+from variational.solvers.state_snapshot import StateSnapshot, take_snapshot
 from variational.solvers.target import Target
+from variational.solvers.transfer import restore
 from variational.state import ContactState
+
+_WAY = ("steps", "time", "progress", "touching")  # of a path that goes on on another mesh
 
 
 @dataclass(frozen=True)
 class RestartRequired:
-    """The loads must be gone through again, since an omitted part of the model turned out to matter."""
+    """An omitted part of the model turned out to matter: the loads must be gone through again, or go on, with it."""
 
     reason: str
     model: FingerModel
     """With more ridges that can touch, a finer mesh, or more parts."""
+    carries: bool = False
+    """Whether the accepted state is an equilibrium of that model too, from which its path goes on."""
 
 
 class Simulation:
@@ -89,16 +96,14 @@ class Simulation:
             StepFailed: a load that could not be reached; everything accepted before was reported.
         """
         loads = self.model.loads
-        moves = next((k for k, load in enumerate(loads) if load.moves), len(loads))
         first = self._loads_done
-        if moves > first and self.model.options.symmetric_start:
-            self._half = HalfFinger(self.model, self.finger, self._comm, self._accepted)
-            if self._half_kept is not None:
-                checkpoint.put(self._half.path, self._half_kept)
-                self.finger.continuation.resumes = False
+        self._begin_half()
+        if self._half is not None and self._half_kept is not None:
+            checkpoint.put(self._half.path, self._half_kept)
+            self.finger.continuation.resumes = False
         try:
             for k, load in enumerate(loads[first:], start=first):
-                if k == moves:
+                if k == self._moves:
                     self._end_half()
                 self._load, self._loads_done = load.name, k
                 self._follow(load)
@@ -137,11 +142,22 @@ class Simulation:
             self._load = load.name
             for target in targets(load, self._x, self.model.numerics.step_scale):
                 if self.restart is None:
-                    (self._half or self.finger.continuation).run(target)
+                    self._path.run(target)
             if self.restart is not None:
                 return
             reached()
         self.restart = self._symmetry_lost()
+
+    @property
+    def _moves(self) -> int:
+        """Number of the load that first moves the bone sideways."""
+        loads = self.model.loads
+        return next((k for k, load in enumerate(loads) if load.moves), len(loads))
+
+    def _begin_half(self) -> None:
+        """Have the half lead the finger where it can, if it does not yet; collective."""
+        if self._half is None and self._moves > self._loads_done and self.model.options.symmetric_start:
+            self._half = HalfFinger(self.model, self.finger, self._comm, self._accepted)
 
     def _end_half(self) -> None:
         """Go on with the whole finger."""
@@ -157,6 +173,11 @@ class Simulation:
         for path in self._paths().values():
             path.solver.iteration.forget()
 
+    @property
+    def _path(self) -> Continuation:
+        """The path that leads the finger."""
+        return self.finger.continuation if self._half is None else self._half.path
+
     def _paths(self) -> dict[str, Continuation]:
         paths = {"finger": self.finger.continuation}
         return paths if self._half is None else paths | {"half": self._half.path}
@@ -166,8 +187,19 @@ class Simulation:
 
         Both go on the same to the last bit on one rank, if this one forgets (:meth:`forget`).
         """
+        return {"paths": {name: checkpoint.take(path) for name, path in self._paths().items()}} | self._progress()
+
+    def carried(self) -> dict[str, Any]:
+        """Return all that a simulation on a wider mesh needs to go on, and free the memory of this one; collective."""
+        finger, solver = self.finger, self.finger.solver
+        snapshot = take_snapshot(finger.coupling, finger.continuation.surface_state)
+        for path in self._paths().values():
+            path.solver.iteration.free()
+        way = {name: getattr(self._path, name) for name in _WAY}
+        return {"carried": (snapshot, way, solver.counts, solver.timings)} | self._progress()
+
+    def _progress(self) -> dict[str, Any]:
         return {
-            "paths": {name: checkpoint.take(path) for name, path in self._paths().items()},
             "checks": {step: (c.frozen.lambda_min, c.frozen.settled, c.gain) for step, c in self.checks.items()},
             "load": (self._loads_done, self._x, self._began, self._runs),
         }
@@ -181,13 +213,31 @@ class Simulation:
 
         Raises:
             OtherBody: its mesh was another one; on every rank.
+            StepFailed: the state that was carried has no equilibrium on this mesh.
         """
-        checkpoint.put(self.finger.continuation, kept["paths"]["finger"])
-        self._half_kept = kept["paths"].get("half")
+        self._loads_done, self._x, self._began, self._passed = kept["load"]
+        if "carried" in kept:
+            self._put_down(*kept["carried"])
+        else:
+            checkpoint.put(self.finger.continuation, kept["paths"]["finger"])
+            self._half_kept = kept["paths"].get("half")
         self.energy, self.states = self.finger.book(), states
         for step, (least, settled, gain) in kept["checks"].items():
             self.checks[step] = Checked(Stability(least, settled), gain)
-        self._loads_done, self._x, self._began, self._passed = kept["load"]
+
+    def _put_down(self, snapshot: StateSnapshot, way: dict[str, Any], counts: Counts, timings: Timings) -> None:
+        """Solve for a state of another mesh again, and have its path go on from there; collective."""
+        self._begin_half()
+        path = self._path
+        for each in self._paths().values():
+            restore(snapshot, each.coupling)
+        path.re_equilibrate("state on a wider mesh")
+        vars(path).update(way)
+        path.resumes = True
+        if self._half is not None:
+            self._half.show()
+        self.finger.solver.counts.add(counts)
+        self.finger.solver.timings.add(timings)
 
     def _follow(self, load: Load) -> None:
         """Reach a load, and slide on where it ends at full slip."""
@@ -203,7 +253,7 @@ class Simulation:
         self._seconds, self._over_time, self._runs = seconds, load.wave is not None, 0
         for piece in before:
             if self.restart is None and self._is_next():
-                (self._half or path).run(piece)
+                self._path.run(piece)
         self._reach(target)
         slides = direction and target.until_full_slip
         while slides and self.restart is None and (self._runs < self._passed or path.slip[1]):
@@ -223,7 +273,7 @@ class Simulation:
     @property
     def _time(self) -> float:
         """Time of the accepted state (s)."""
-        return (self.finger.continuation if self._half is None else self._half.path).time
+        return self._path.time
 
     def _done(self, part: float) -> float:
         """Return the part of the present load that is done, in time where its voltage is over time."""
@@ -232,7 +282,7 @@ class Simulation:
 
     def _reach(self, target: Target) -> None:
         if self.restart is None and self._is_next():
-            (self._half or self.finger.continuation).run(target)
+            self._path.run(target)
             if self.restart is None:
                 self.restart = self._symmetry_lost()
 
@@ -268,7 +318,8 @@ class Simulation:
     def _zone_exceeded(self, loads: RidgeLoads) -> RestartRequired | None:
         """Return that more ridges must be able to touch, where they must; collective."""
         wider = self._zone.check(loads)
-        return None if wider is None else RestartRequired(wider[1], self.model.with_ridges(wider[0]))
+        carries = not self.model.options.past  # the past of layers is that of their mesh
+        return None if wider is None else RestartRequired(wider[1], self.model.with_ridges(wider[0]), carries)
 
     def _accepted(self, target: Target, part: float, attempt: Attempt) -> bool:
         """Check and report an accepted state; return whether the path must stop here."""

@@ -1,9 +1,10 @@
 """The bands that a scene's assumptions put on friction, by charged cylinders: over closures, and over all of them.
 
 **Closures.** A result has one model of roughness. The other ones of the package, on the same rms height, wavelength and
-modulus, give other attractions, and which one is a finger's is open (docs/microscale.md). Their µ_app at full slip is
-that of the result, times the ratio of the charged cylinders' with the two closures. The contact is that of the result
-without voltage where it has one, else the default finger's.
+modulus, give other attractions, and which one is a finger's is open (docs/microscale.md). On the roughness of a fitted
+finger each has the rms height of the finger's air gap instead. Their µ_app at full slip is that of the result, times
+the ratio of the charged cylinders' with the two closures. The contact is that of the result without voltage where it
+has one, else the default finger's.
 
 **All assumptions.** The ± of a result is what mesh and penalty leave unsolved. Its assumptions move µ_app by more
 (docs/assumptions.md). Each part changes one of them, by the same ratio:
@@ -41,6 +42,7 @@ from fingerpad.model.cautions import sticking
 from fingerpad.reduced.cylinders import over_forces
 from fingerpad.results.quantities import BAND, KNOWN
 from fingerpad.scene import Scene
+from fingerpad.scene.fingers import AIR_GAP, FINGERS, PAPER, on_roughness
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.remarks import coefficient
 from fingerpad.slices.errors import known_at
@@ -62,18 +64,23 @@ _SHEAR_STRESS = Derjaguin(mu_f=0.0, tau_0=1.0)
 _OUTSIDE, _OWN = "no field in contact", "the result's own closure"
 
 
-def closures(own: Closure) -> dict[str, Closure]:
+def closures(own: Closure, finger: str = PAPER) -> dict[str, Closure]:
     """Return the closures of the package on the roughness of one of them, by words; empty for a law of one's own.
 
-    Boundary elements are left out where the package has no table of the ratio of waves or the Hurst exponent.
+    They have its rms height, or, on the roughness of a fitted finger, each the one of the finger's air gap. Boundary
+    elements are left out where the package has no table of the ratio of waves or the Hurst exponent.
     """
     if not own.shared:
         return {}
     surface: dict[str, Any] = {name: getattr(own, name) for name in own.shared}
     surface = {"shortest_wave": surface["wavelength"] / 16, "hurst": 0.75} | surface
 
+    fitted = FINGERS[finger].values_with(on_roughness(type(own).__name__, getattr(own, "field_in_contact", True)))
+    of_one_gap = fitted.get("roughness.h_rms") == surface["h_rms"]
+
     def like(law: type[Closure], **more: Any) -> Closure:
-        return law(**{name: value for name, value in surface.items() if name in law.shared}, **more)
+        own_height = {"h_rms": AIR_GAP[on_roughness(law.__name__, **more)]} if of_one_gap else {}
+        return law(**{name: value for name, value in (surface | own_height).items() if name in law.shared}, **more)
 
     found = {"bearing area": like(BearingArea)}
     for law, words in ((BoundaryElements, "boundary elements"), (Persson, "Persson's theory")):
@@ -169,7 +176,7 @@ def with_band(result: "Result") -> "Result":
         return result
     try:
         here = _solved(scene, slip, scene.closure(), result.uncharged)
-        laws = {} if here.why else closures(scene.closure())
+        laws = {} if here.why else closures(scene.closure(), scene.finger)
         found = {words: friction(scene, slip, law, result.uncharged) for words, law in laws.items()}
         known = _known(result, slip, here, found)
     except SceneError as error:

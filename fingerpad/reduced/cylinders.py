@@ -3,21 +3,24 @@ r"""The model "cylinders": every ridge in contact the same charged cylinder, an 
 n ridges bear :math:`f = f_{ext} / n` each; :mod:`variational.attraction.cylinder` gives contact force, attraction and
 air gap of a ridge. Friction at full slip is the limit of the friction law at the mean pressure, over the length in
 contact; Coulomb's is :math:`f_T = \mu_0 (f_{ext} + f_{el})`. The number of ridges in contact and the length of their
-contact are those of the default finger *without* voltage, or of one similar to it
-(:mod:`fingerpad.reduced.default_finger`), interpolated between full runs. The modulus E* of the cylinders is then the
-one with which Hertz's law gives that length, which includes finite strain, layers and shear. The length under voltage
-follows from Maugis's equations. More shear stress stiffens the ridges, see below.
+contact are those of one press of the finger *without* voltage (:mod:`fingerpad.reduced.press`), interpolated between
+its forces. The modulus E* of the ridges is then the one with which their tips have that length, which includes finite
+strain, layers and shear. The length under voltage follows from Maugis's equations. More shear stress stiffens the
+ridges, see below.
 
-**Shear.** The table's finger has a friction coefficient of 0.25. Stronger friction leans the finger and its ridges
-further; their trailing sides lift, and the contact is shorter, about in proportion to the shear stress (Forsbach et al.
-2023, Fig. 8). It shortens as if the ridges were stiffer, by the shear stress beyond that of the table at the same
+**Tips.** Sinusoidal ridges are cylinders of the radius of their crests. Of any other profile the contact reaches where
+the tip is no circle any more: it is the power law about its length without voltage (:mod:`variational.attraction.tip`).
+
+**Shear.** The contact at full slip is that with a friction coefficient of 0.25. Stronger friction leans the finger and
+its ridges further; their trailing sides lift, and the contact is shorter, about in proportion to the shear stress
+(Forsbach et al. 2023, Fig. 8). It shortens as if the ridges were stiffer, by the shear stress beyond that at the same
 contact pressure:
 
 .. math:: E^*(p_c) = E^*_{0.25} + \kappa \max(t_{max}(p_c) - 0.25\,p_c,\, 0), \qquad \kappa = 10 .
 
-The one number :math:`\kappa` (:data:`SHEAR`) is fitted to the attraction of states of the full model, of seeded scenes
-over coatings, forces, voltages and friction coefficients. Other states test it, and so do all contact lengths
-(``docs/closed_form.md``). The number of ridges stays that of the table.
+The one number :math:`\kappa` (:data:`SHEAR`) is fitted to the attraction of states of the full model of the default
+finger, of seeded scenes over coatings, forces, voltages and friction coefficients. Other states test it, and so do all
+contact lengths (``docs/closed_form.md``). The number of ridges stays that of the press.
 
 The model leaves out that ridges in the middle bear more than those at the edge, and that ridges come and go with the
 voltage. ``docs/closed_form.md`` has its errors.
@@ -26,28 +29,26 @@ voltage. ``docs/closed_form.md`` has its errors.
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fingerpad.model.cautions import examine, on_scene, sticking
-from fingerpad.reduced import cylinder_errors, default_finger
-from fingerpad.reduced.default_finger import Similar, similar
+from fingerpad.reduced import cylinder_errors, press
 from fingerpad.reduced.model import STATES, Model, check_supported, reduced_state
+from fingerpad.reduced.press import Press
 from fingerpad.results.data import MODEL_ERROR, Cost
 from fingerpad.results.quantities import MODEL
 from fingerpad.results.result import Result
 from fingerpad.results.states import WORDS
 from fingerpad.scene import Scene, SceneError
-from fingerpad.scene.fingers import ADULT
-from fingerpad.scene.messages import show
-from fingerpad.scene.remarks import coefficient, used
+from fingerpad.scene.remarks import used
 from fingerpad.slices import errors
 from geometry.parameters import Fingertip
 from geometry.profiles import Profiles
-from variational.attraction.cylinder import Cylinder, NoEquilibriumError, RidgeState, hertz_modulus
+from variational.attraction.cylinder import Cylinder, NoEquilibriumError, RidgeState
+from variational.attraction.tip import Power, Round, Tip, kernel
 from variational.caution import Caution
 from variational.state import ContactState, Errors
 
@@ -58,44 +59,19 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 SHEAR = 10.0
 """What the modulus of a ridge gains, over the shear stress beyond that of the default friction coefficient."""
-_default = cache(Scene)
+_FLAT = 0.01
+"""Of a ridge's height: how far its middle may be below its crests."""
 
 
-def _scaled(scene: Scene) -> Similar:
-    """Return how the finger is scaled; refuse one that is not similar to the default finger."""
-    found = similar(scene)
-    if isinstance(found, str):
-        whose = "" if scene.finger == ADULT else f" of finger {show(scene.finger)}"
-        raise SceneError(
-            f"{found}{whose} is not that of the default finger or of one similar to it, whose contact length is known; "
-            "take the model 'full', fingerpad run, a minute or two"
-        )
-    return found
-
-
-def _source(scene: Scene, scaled: Similar) -> str:
+def _source(scene: Scene) -> str:
     """Return in words where the contact length is from."""
-    default, f_ext = _default(), scene.f_ext / scaled.force
-    source = "uncharged contact length interpolated between full runs of the default finger"
-    low, high = default_finger.FORCES[0], default_finger.FORCES[-1]
-    if not low <= f_ext <= high:
-        source = f"uncharged contact length extrapolated from full runs at {low:g} to {high:g} N/m"
-    source += f", {scaled.words}" if scaled.words else ""
-    if scene.friction != default.friction:
-        source += f"; that of full slip with a friction coefficient of {default.friction:g}, and shorter by more shear"
+    low, high = (press.of(scene).forces[k] for k in (0, -1))
+    source = "uncharged contact length interpolated between forces of one press of this finger"
+    if not low <= scene.f_ext <= high:
+        source = f"uncharged contact length extrapolated from a press of this finger at {low:g} to {high:g} N/m"
+    if scene.friction != press.KNOWN:
+        source += f"; that of full slip with a friction coefficient of {press.KNOWN:g}, and shorter by more shear"
     return source
-
-
-def indentation(f_ext: float, state: str, scaled: Similar | None = None) -> float:
-    """Return how far a finger's bone is lowered (m), without voltage; the model itself has no bone.
-
-    Args:
-        f_ext: external force (N/m).
-        state: ``charged`` or ``full_slip``. A voltage of 200 V moves the bone at full slip by up to 6 %.
-        scaled: a finger similar to the default one, which it is by default.
-    """
-    scaled = scaled or Similar()
-    return scaled.length * default_finger.indentation(f_ext / scaled.force, state)
 
 
 class Cylinders(Model):
@@ -112,9 +88,10 @@ class Cylinders(Model):
     def over_forces(
         self, scene: Scene, f_ext: Sequence[float], state: str, solve: Callable[[Scene], Result]
     ) -> list[ContactState]:
-        """Return the states computed together, with the indentations of the default finger without voltage."""
-        states, scaled = over_forces(scene, f_ext, state), _scaled(scene)
-        return [replace(each, bone_height=-indentation(each.f_ext, state, scaled)) for each in states]
+        """Return the states computed together, with the indentations without voltage."""
+        depths = press.of(scene).indentation(f_ext, state).tolist()
+        found = over_forces(scene, f_ext, state)
+        return [replace(each, bone_height=-depth) for each, depth in zip(found, depths, strict=True)]
 
     def of_finger(self, scene: Scene, section: Result, finger: "WholeFinger") -> Result:
         """Return the result with the known error of the whole finger, or a caution that it is not known."""
@@ -140,11 +117,11 @@ def solve(scene: Scene) -> Result:
     """Return the answer of the cylinders.
 
     Raises:
-        SceneError: a scene with a history, a finger that is not similar to the default one, or ridges that do not stay.
+        SceneError: a scene with a history, a finger without a press, or ridges that do not stay.
     """
     start = time.process_time()
     check_supported(scene, Cylinders.name)
-    source, ridges = _source(scene, _scaled(scene)), dict[str, RidgeState]()
+    source, ridges = _source(scene), dict[str, RidgeState]()
     exact = "a closed form, without a mesh: no discretisation error but that of the contact length it is given"
     cautions, found = list[Caution](), dict[str, ContactState]()
     for state in STATES:
@@ -177,7 +154,7 @@ def over_forces(
     scene: Scene,
     f_ext: Sequence[float],
     state: str,
-    press: Sequence[ContactState] = (),
+    pressed: Sequence[ContactState] | Press = (),
     tips: float = 1.0,
     shear: float = SHEAR,
 ) -> list[ContactState]:
@@ -187,7 +164,8 @@ def over_forces(
         scene: with the voltage of all.
         f_ext: external forces (N/m).
         state: ``charged`` or ``full_slip``.
-        press: states without voltage under these forces, whose contact it is; by default the default finger's.
+        pressed: states without voltage under these forces, or a press, whose contact it is; by default the finger's
+            press.
         tips: radius of the ridges' tips over that of the scene; Hertz's length grows with its root.
         shear: in place of :data:`SHEAR`.
 
@@ -195,34 +173,30 @@ def over_forces(
         SceneError: as :func:`solve`, but for what is wrong with the other state alone.
     """
     check_supported(scene, Cylinders.name)
-    return [found for found, _ in _over_forces(scene, f_ext, state, press, tips, shear)]
+    return [found for found, _ in _over_forces(scene, f_ext, state, pressed, tips, shear)]
 
 
 def _over_forces(
     scene: Scene,
     f_ext: Sequence[float],
     state: str,
-    press: Sequence[ContactState] = (),
+    pressed: Sequence[ContactState] | Press = (),
     tips: float = 1.0,
     shear: float = SHEAR,
 ) -> list[tuple[ContactState, RidgeState]]:
     """Return the states of :func:`over_forces`, and those of a ridge."""
-    if press:
-        length = np.array([each.contact_length for each in press])
-        ridges = np.array([each.ridges_in_contact for each in press])
+    own = pressed or press.of(scene)
+    if isinstance(own, Press):
+        length, ridges = own.length(f_ext, state), own.ridge_count(f_ext, state)
     else:
-        scaled = _scaled(scene)
-        of_default = np.array(f_ext) / scaled.force
-        length, ridges = (
-            scaled.length * default_finger.lengths(of_default, state),
-            default_finger.ridges(of_default, state),
-        )
-    radius, closure = tips * tip_radius(scene.geometry), scene.closure()
-    forces, lengths = np.array(f_ext) / ridges, tips**0.5 * length / ridges
-    moduli, stiffening = hertz_modulus(radius, forces, lengths), _stiffening(scene, state, shear)
+        length = np.array([each.contact_length for each in own])
+        ridges = np.array([each.ridges_in_contact for each in own])
+    forces, tip, closure = np.array(f_ext) / ridges, tip_of(scene.geometry, length / ridges, tips), scene.closure()
+    lengths = tips ** (1 / tip.power) * length / ridges
+    moduli, stiffening = tip.modulus(forces, lengths), _stiffening(scene, state, shear)
     voltage = scene.volts if scene.drive is None else scene.drive.effective
     try:
-        found = Cylinder(radius, moduli, scene.h_0, closure, stiffening).under_loads(forces, voltage)
+        found = Cylinder(tip, moduli, scene.h_0, closure, stiffening).under_loads(forces, voltage)
     except NoEquilibriumError as error:
         why = "; ".join(filter(None, (str(error), sticking(closure, scene.volts))))
         raise SceneError(f"{WORDS[state]} of the model 'cylinders': {why}") from None
@@ -242,10 +216,10 @@ def _over_forces(
 
 def _stiffening(scene: Scene, state: str, shear: float) -> Callable[[Array], Array] | None:
     """Return what the modulus of a ridge gains (Pa) at contact pressures (Pa); None where nothing shears it further."""
-    law, known = scene.friction_law(), coefficient(_default())
-    if state != "full_slip" or law is None or known is None or coefficient(scene) == known:
+    law = scene.friction_law()
+    if state != "full_slip" or law is None or scene.friction == press.KNOWN:
         return None
-    return lambda p_c: shear * np.maximum(np.asarray(law.limit(p_c), dtype=float) - known * p_c, 0.0)
+    return lambda p_c: shear * np.maximum(np.asarray(law.limit(p_c), dtype=float) - press.KNOWN * p_c, 0.0)
 
 
 def _errors(state: ContactState, known: Mapping[str, float]) -> Errors:
@@ -268,20 +242,33 @@ def _others(state: str, ridge: RidgeState) -> list[Caution]:
     return [Caution("other_states", text, ridge.others[0])]
 
 
-def tip_radius(finger: Fingertip) -> float:
-    """Return the radius of curvature of a ridge's tip (m).
+def tip_of(finger: Fingertip, lengths: Array, tips: float = 1.0) -> Tip:
+    """Return the tips of ridges about the lengths (m) of their contact without voltage.
+
+    Args:
+        finger: whose ridges they are.
+        lengths: shape (loads,).
+        tips: radius of the tips over that of the finger.
 
     Raises:
-        SceneError: a ridge has several crests, or a flat one.
+        SceneError: a ridge has several crests, or one beside its middle.
     """
-    step, profiles = 1e-3 * finger.ridge_wavelength, Profiles(finger)
-    crest = profiles.crests[-1]
-    low, high = (float(profiles.skin(s)) for s in (crest, crest + step))
-    places = {round(s / step) % 1000 for s in profiles.crests}  # one in either groove is the same one
-    if len(places) > 1 or high <= low:
-        what = f"{len(places)} crests" if len(places) > 1 else "a flat tip"
+    profiles = Profiles(finger)
+    lower = float(profiles.skin(0.0)) / finger.ridge_amplitude
+    if lower > _FLAT:
         raise SceneError(
-            f"geometry.ridge_profile gives a ridge {what}; the model 'cylinders' takes ridges for cylinders, so use "
-            "the model 'full'"
+            f"geometry.ridge_profile gives a ridge crests beside its middle, which is {100 * lower:.3g} % of the ridge "
+            f"lower, and it may be {100 * _FLAT:g} %; the model 'cylinders' takes ridges for single tips, so use the "
+            "model 'full'"
         )
+    if len(finger.ridge_profile) == 1:
+        return Round(tips * tip_radius(finger))
+    depth, power = kernel(profiles.harmonics, finger.ridge_wavelength, lengths / 2)
+    return Power(power, depth, tips ** (1 / power) * lengths / 2)
+
+
+def tip_radius(finger: Fingertip) -> float:
+    """Return the radius of curvature of a sinusoidal ridge's tip (m)."""
+    step, profiles = 1e-3 * finger.ridge_wavelength, Profiles(finger)
+    low, high = (float(profiles.skin(s)) for s in (0.0, step))
     return step**2 / (2 * (high - low))

@@ -123,16 +123,14 @@ def _run(scene: Scene, session: _Session, kept: dict[str, Any] | None, context: 
             while True:
                 attempt = _Attempt(model, session)
                 console.expect(len(loads), slipping, coefficient(scene) or 0.0, first)
-                if kept is not None:
-                    attempt.resume(kept)
-                    kept = None
-                restart = attempt.follow()
+                restart = attempt.follow() if kept is None else attempt.resume(kept) or attempt.follow()
                 if restart is None:
                     break
                 states, seconds = attempt.report.record.states, session.clock.processor_seconds()
                 restarts.record(restart, states, attempt.simulation.finger, seconds)
-                writer.restart()
-                model = restart.model
+                model, kept = restart.model, attempt.carried() if restart.carries else None
+                if kept is None:
+                    writer.restart()
             result = attempt.result(scene, context)
             cost, where = result.cost, "" if result.folder is None else f"; results in {result.folder}"
             work = f"{cost.newton_iterations} Newton iterations, {cost.factorisations} factorisations"
@@ -197,30 +195,41 @@ class _Attempt:
         if self._session.checkpoint is None:
             return
         with self._session.clock.phase("output"):
-            state = {
-                "simulation": self.simulation.kept(),
-                "report": self.report.kept(),
-                "recorder": None if self._recorder is None else self._recorder.kept(),
+            state = self._state(self.simulation.kept()) | {
                 "restarts": self._session.restarts.kept(),
                 "mesh": self._model.mesh.model_dump(),
                 "both_halves": self._model.options.both_halves,
-                "done": self._done,
                 "seconds": self._session.clock.present(),
             }
             if self._comm.rank == 0:
                 self._session.checkpoint.write(state, self.report.record.states)
         self._has_kept = True
 
-    def resume(self, kept: dict[str, Any]) -> None:
-        """Go on from a checkpoint, as :func:`fingerpad.runs.checkpoint.read` gives it; collective."""
-        self._has_kept, self._done, states = True, kept["done"], kept["items"]
+    def _state(self, simulation: dict[str, Any]) -> dict[str, Any]:
+        recorder = None if self._recorder is None else self._recorder.kept()
+        return {"simulation": simulation, "report": self.report.kept(), "recorder": recorder, "done": self._done}
+
+    def carried(self) -> dict[str, Any]:
+        """Return what the attempt on a wider mesh goes on from; collective."""
+        return self._state(self.simulation.carried()) | {"items": self.report.record.states, "kept": self._has_kept}
+
+    def resume(self, kept: dict[str, Any]) -> RestartRequired | None:
+        """Go on from a checkpoint, as :func:`fingerpad.runs.checkpoint.read` gives it, or another mesh; collective.
+
+        Returns:
+            That all loads must be gone through again, where the state was of another mesh and is not found on this one.
+        """
+        self._has_kept, self._done, states = kept.get("kept", True), kept["done"], kept["items"]
         try:
             self.simulation.resume(kept["simulation"], [*states])
         except OtherBody as error:
             raise CheckpointError(f"the checkpoint is of another mesh: {error}") from error
-        self.report.resume(states, kept["report"], self._done)
+        except (StepFailed, ValueError) as error:
+            return RestartRequired(str(error), self._model)
+        self.report.resume(states, kept["report"], self._done, listed="kept" in kept)
         if self._recorder is not None:
             self._recorder.resume(kept["recorder"])
+        return None
 
     def _before_solve(self) -> None:
         """Stop if asked to, or tell how far the error estimate is."""

@@ -167,10 +167,13 @@ class Chain:
 
     def _path(self, model: FingerModel) -> FullSlips:
         """Return the full slips at the end of a path, with what the path turns out to need."""
+        kept, states = None, list[ContactState]()
         while True:
             simulation = Simulation(model, self._comm)
             restart: RestartRequired | None
             try:
+                if kept is not None:
+                    simulation.resume(kept, states)
                 restart = simulation.run()
             except StepFailed as error:
                 restart = finer(model, error, self._comm)
@@ -179,6 +182,7 @@ class Chain:
                     raise StepFailed(lost(error, state, model.closure)) from error
             if restart is None:
                 return FullSlips(simulation)
+            kept, states = simulation.carried() if restart.carries else None, simulation.states
             simulation.finger.solver.iteration.free()
             model = restart.model
 

@@ -56,7 +56,7 @@ class Restarts:
         self.table, self.notes, self._seconds = kept["table"], kept["notes"], kept["seconds"]
 
     def record(self, restart: RestartRequired, states: Sequence[ContactState], finger: Finger, seconds: float) -> None:
-        """Record a restart; states, finger and processor time (s) are those until here."""
+        """Record a restart, or show one that carries; states, finger and processor time (s) are those until here."""
         mesh, counts = restart.model.mesh, finger.solver.counts
         step, load = (states[-1].step, states[-1].load) if states else (0, "start")
         whole = restart.model.options.both_halves
@@ -68,9 +68,12 @@ class Restarts:
             self.notes.append(
                 f"No equilibrium was found with a contact size of {size:g} µm; the run started again with half of it."
             )
-        text = f"step {step} ({load}): {restart.reason}; all loads again with {added}"
+        text = f"step {step} ({load}): {restart.reason}; "
+        text += f"{'the path goes on' if restart.carries else 'all loads again'} with {added}"
         self._console.show(f"fingerpad: {text}")
         self._log.warning(text)
+        if restart.carries:
+            return
         self.table.append(
             {
                 "step": step,

@@ -16,6 +16,7 @@ from fingerpad.model.cautions import examine
 from fingerpad.model.options import check
 from fingerpad.reduced.cylinders import Cylinders
 from fingerpad.reduced.model import Model
+from fingerpad.reduced.press import known
 from fingerpad.results.data import FULL_WORDS, MODEL_WORDS
 from fingerpad.results.data import checked as checked_outputs
 from fingerpad.results.files import replace_json
@@ -53,8 +54,20 @@ class _Full(Model):
         return full.run(scene, context)
 
 
+class _ClosedForm(Cylinders):
+    """The closed form, of a finger that is pressed first where that has not been done (:mod:`fingerpad.runs.press`)."""
+
+    def check(self, scene: Scene) -> None:
+        """Refuse a scene that it does not answer for; have its finger pressed."""
+        super().check(scene)
+        if known(scene) is None:
+            with needed_by("the press of a finger"):
+                from fingerpad.runs.press import press  # finite elements
+            press(scene)
+
+
 MODELS: dict[str, Model] = {
-    "cylinders": Cylinders(),
+    "cylinders": _ClosedForm(),
     "full": _Full(),
 }
 """The models by name, the cheapest first: where a reduced model of one's own is registered."""
@@ -218,6 +231,7 @@ def _whole(scene: Scene, model: Model, context: RunContext) -> Result:
         _refuse_different(scene, context.ranks)
         model.check(scene)
         return newtons.run(scene, context)
+    model.check(scene)
     here = replace(context, folder=None)
     found = model.whole(scene, lambda each: _solved(each, model, here), context.outputs)
     return kept(found, context, of_outputs(context.outputs))

@@ -5,11 +5,11 @@ from collections.abc import Mapping
 from typing import Any
 
 from fingerpad.scene import law_keys
-from fingerpad.scene.fingers import start
 from fingerpad.scene.loads import Load
 from fingerpad.scene.materials import ADHESION_LAWS, CLOSURES, FRICTION_LAWS, MATERIALS
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.parameters import CONTACT, Accuracy, Contact, Numerics, Output
+from fingerpad.scene.presets import start
 from fingerpad.scene.reading import override, plain, put
 from fingerpad.scene.scene import Scene, as_kept, changed_keys, from_data, load
 from variational.contact.friction import Coulomb

@@ -2,29 +2,25 @@
 
 ::
 
-    finger = "child"
+    finger = "fitted"
     friction = 0.3         # a key that is given wins over that of the name
 
-``"adult"`` is the default finger and gives no key. A value is from a source that is cited, or it is marked as an
-*assumption*; of most sources the abstract alone was read, and the text says so. Relative values are relative to the
-default finger, which stands for an adult between the moist and the dry one. ``docs/assumptions.md`` has the
-friction of all fingers side by side.
-
-A scene keeps which keys were given. What its finger's name and its accuracy give (the presets) is put under them each
-time, so that another name or accuracy gives its own.
+``"paper"`` is the default finger, that of Forsbach et al. 2023, and gives no key. ``"fitted"``, ``"moist"`` and
+``"held"`` are one finger in three states: dry, moist, and after 10 s or more on glass. Their geometry, moduli,
+roughness and shear stress are fitted to rows of ``data/findings.toml`` that only fit (:attr:`NamedFinger.fitted_to`).
+The other names change the fitted finger by what was measured of such people. A value is from a source that is cited,
+or it is marked as an *assumption*; of most sources the abstract alone was read, and the text says so.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, is_dataclass
-from functools import reduce
+from collections.abc import Mapping
+from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, Literal
 
-from fingerpad.scene.law_keys import keys_of
 from geometry.parameters import Fingertip
 
-ADULT = "adult"
-FingerName = Literal["adult", "woman", "child", "elderly", "callused", "dry", "moist"]
+PAPER = "paper"
+FingerName = Literal["paper", "fitted", "moist", "held", "woman", "child", "old", "callused", "dry"]
 _OF_RIDGES = (  # lengths that go with the ridges
     "sc_thickness",
     "ve_thickness",
@@ -45,9 +41,28 @@ _OF_SIZE = (  # lengths that go with the finger's
     "nail_half_width",
     "nail_bed_half_width",
 )
+_SC = 300e-6  # m, stratum corneum of the fitted finger
 _PAD = 28e-3  # m, radius and length of the default pad along the finger
 SOFT = {"subcutis": 25e3, "dermis": 2.55e3, "viable_epidermis": 61.75e3, "stratum_corneum": 86.76e3}
 """Shear moduli (Pa) of the default finger's soft layers (Table 2)."""
+_FITTED = {"subcutis": 2.5e3, "dermis": 6.7e3, "viable_epidermis": 0.5e6, "stratum_corneum": 0.5e6}  # the same, fitted
+_SHEAR = 14e3  # Pa, of wet ridges
+AIR_GAP = {
+    "BearingArea": 2.69e-6,
+    "BoundaryElements": 8.09e-6,
+    "Persson": 6.81e-6,
+    "BoundaryElements, no field in contact": 3.86e-6,
+    "Persson, no field in contact": 4.29e-6,
+}
+"""Rms heights (m) by closure with which a fitted ridge has an air gap of 2 µm under a mean contact pressure of 18 kPa,
+that of 1 N, on 300 µm of stratum corneum."""
+
+
+def on_roughness(law: str, field_in_contact: bool = True) -> str:
+    """Return the key of a closure in :data:`AIR_GAP`."""
+    return law if field_in_contact else f"{law}, no field in contact"
+
+
 _RIDGES = (
     "Prints of Králík and Novotný 2003 (Variability and Evolution 11, 5 to 30), whose data were read in the repository "
     "andburch/bayesianfingerprintr"
@@ -55,12 +70,13 @@ _RIDGES = (
 _STIFFNESS = '"Age and gender effect on human tactile perception, in vivo", abstract, with doi 10.1098/rsos.170321'
 _MOISTURE = "Yuan and Verma 2006, Colloids and Surfaces B 48, 6 to 12, abstract"
 _FRICTION = "Buchholz, Frederick and Armstrong 1988, Ergonomics 31, 317 to 325, as tabled on a page of the authors"
-
-
-_NOT_MEASURED = "This finger was not measured: its values are from several sources, or assumed (docs/assumptions.md)."
+NOT_MEASURED = (
+    "No one finger was measured for these values: they are from several sources, fitted, or assumed "
+    "(docs/assumptions.md)."
+)
 MOISTURE = (
-    "No finger was measured for these values. Moisture raises the attraction of a constant voltage here, without "
-    "losses; people with moist fingers needed a higher voltage to feel it (arXiv 2409.16936)."
+    f"{NOT_MEASURED} Moisture raises the attraction of a constant voltage here, without losses; people with moist "
+    "fingers needed a higher voltage to feel it (arXiv 2409.16936)."
 )
 
 
@@ -72,6 +88,8 @@ class Trait:
     """Values by dotted key, in SI units."""
     source: str
     """Where they are from; begins with "Assumption" where no source gives them."""
+    rows: tuple[str, ...] = ()
+    """Rows of ``data/findings.toml`` to which the values are fitted."""
 
 
 @dataclass(frozen=True)
@@ -81,7 +99,8 @@ class NamedFinger:
     words: str
     """Who it is."""
     traits: tuple[Trait, ...] = ()
-    remark: str = _NOT_MEASURED
+    """Its keys; of two traits with one key the later holds."""
+    remark: str = NOT_MEASURED
     """What a reader must know of its numbers, a sentence; empty for none."""
 
     @property
@@ -89,72 +108,115 @@ class NamedFinger:
         """All of its values by dotted key."""
         return {key: value for trait in self.traits for key, value in trait.values.items()}
 
+    def values_with(self, closure: str) -> dict[str, Any]:
+        """Return the values with the rms height of a closure, a key of :data:`AIR_GAP`."""
+        values = self.values
+        return values | ({_H_RMS: AIR_GAP.get(closure, values[_H_RMS])} if _H_RMS in values else {})
+
+    @property
+    def fitted_to(self) -> tuple[str, ...]:
+        """Rows of ``data/findings.toml`` to which values of the finger are fitted."""
+        return tuple(dict.fromkeys(row for trait in self.traits for row in trait.rows))
+
+
+_H_RMS = "roughness.h_rms"
+
 
 def _round(value: float) -> float:
     return float(f"{value:.3g}")
 
 
 def _shape(ridges: float, size: float) -> dict[str, float]:
-    """Return the default finger's lengths but the ridges' distance, in parts of the default ones."""
-    default = Fingertip()
+    """Return the fitted finger's lengths but the ridges' distance, in parts of its own."""
+    default = Fingertip(sc_thickness=_SC)
     lengths = {name: ridges * getattr(default, name) for name in _OF_RIDGES}
     lengths |= {name: size * getattr(default, name) for name in _OF_SIZE}
     pad = {f"slices.{name}": size * _PAD for name in ("radius", "length")}
     return {key: _round(value) for key, value in ({f"geometry.{k}": v for k, v in lengths.items()} | pad).items()}
 
 
-def _stiffer(factor: float) -> dict[str, float]:
-    """Return the shear moduli of the soft layers, in parts of the default ones."""
-    return {f"materials.{layer}.shear_modulus": _round(factor * value) for layer, value in SOFT.items()}
+def _moduli(factor: float = 1.0) -> dict[str, float]:
+    """Return the shear moduli of the soft layers, in parts of the fitted ones."""
+    return {f"materials.{layer}.shear_modulus": _round(factor * value) for layer, value in _FITTED.items()}
 
 
-_DRY = {"friction": 0.2, "roughness.young": 3.2e6, "electric.tissue": "dry", "electric.leak": "sliding dry"}
-_MOIST = {"friction": 0.32, "roughness.young": 0.32e6, "electric.tissue": "moist", "electric.leak": "moist"}
-_OF_MOISTURE = {
-    "friction": "Moist skin has 1.6 times the friction of dry skin: palms on paper, suede and tape have 1.56, 1.69 and "
-    f"1.61 ({_FRICTION}). Assumption: so on glass, with the default halfway between the two",
-    "roughness.young": f"Dry stratum corneum is ten times as stiff as moist one ({_MOISTURE}). Assumption: the default "
-    "is halfway between the two, and the layer as a whole is unchanged",
-}
-_DRY_CIRCUIT = Trait(
-    {key: _DRY[key] for key in ("electric.tissue", "electric.leak")},
-    "For drives: published constants of dry skin, and a leak that is an assumption (docs/drive.md)",
+def _surface(young: float, tissue: str, leak: str) -> dict[str, Any]:
+    """Return what moisture changes of a ridge's surface and of its circuit."""
+    return {"roughness.young": young, "electric.tissue": tissue, "electric.leak": leak}
+
+
+_OF_SURFACE = (
+    f"Dry stratum corneum is ten times as stiff as moist one ({_MOISTURE}). Assumption: the fitted finger is halfway "
+    "between the two, and the layer as a whole is unchanged. For drives: published constants of skin, and a leak that "
+    "is a guess (docs/drive.md)"
 )
-_MOIST_CIRCUIT = Trait(
-    {key: _MOIST[key] for key in ("electric.tissue", "electric.leak")},
-    "For drives: published constants of wetted skin, and a leak that is a guess (docs/drive.md)",
+_GEOMETRY = (
+    Trait(
+        {"geometry.ridge_profile": (1.0, -0.625, 0.27778, -0.08333, 0.01515, -0.00126)},
+        "Tips −sin(t/2)^12, flat over half a ridge: in two sets of public prints ridges touch over 0.47 ± 0.10 and "
+        "0.38 ± 0.07 of the gross area",
+        ("share_db1", "share_db2"),
+    ),
+    Trait(
+        {"geometry.sc_thickness": _SC},
+        "Some 300 µm on a fingertip (doi 10.1098/rsif.2012.0467, a caption)",
+    ),
+    Trait(
+        _moduli(),
+        "Young's moduli of stratum corneum and epidermis, across, are 1 to 2 MPa each, without a difference (Geerligs "
+        "et al. 2011, abstract). Dermis over subcutis are as 40 over 15 kPa, measured on a forearm (Feng et al. 2022, "
+        "abstract); both are 0.5 of that, fitted to depth and gross area under 1 N",
+        ("gross_1n", "depth_1n"),
+    ),
+    Trait(
+        {_H_RMS: AIR_GAP["BearingArea"]},
+        "An air gap of 2 µm where ridges bear 18 kPa, for each closure",
+        ("gap",),
+    ),
 )
-
-
-def _surface(values: Mapping[str, Any]) -> tuple[Trait, ...]:
-    """Return friction and stiffness of the surface of a dry or a moist finger."""
-    return tuple(Trait({key: values[key]}, source) for key, source in _OF_MOISTURE.items())
-
+_DRY = (
+    Trait({"friction": 0.25}, "Dry touchscreens, short contact", ("friction_input",)),
+    Trait(_surface(1e6, "dry", "sliding dry"), _OF_SURFACE),
+)
+_WET = (
+    Trait(
+        {"friction": {"law": "Derjaguin", "mu_f": 0.0, "tau_0": _SHEAR, "p_reg": 1e3}},
+        "One shear stress on all ridges in contact, by the friction of wet glass under 1 N",
+        ("friction_wet",),
+    ),
+    Trait(_surface(0.32e6, "moist", "moist"), _OF_SURFACE),
+)
+_FITTED_FINGER = (*_GEOMETRY, *_DRY)
 
 FINGERS = MappingProxyType(
     {
-        ADULT: NamedFinger("the default finger, with the geometry and the materials of the paper", remark=""),
+        PAPER: NamedFinger("the default finger, with the geometry and the materials of the paper", remark=""),
+        "fitted": NamedFinger("a dry finger, fitted to measurements", _FITTED_FINGER),
+        "moist": NamedFinger("the fitted finger, sweating or wetted", (*_GEOMETRY, *_WET), MOISTURE),
+        "held": NamedFinger("the fitted finger after 10 s or more on glass", (*_GEOMETRY, *_WET), MOISTURE),
         "woman": NamedFinger(
             "a woman, 18 years or older",
             (
+                *_FITTED_FINGER,
                 Trait(
                     {"geometry.ridge_wavelength": 441e-6},
                     f"Mean of 33 women; 23 men have 492 µm. {_RIDGES}",
                 ),
                 Trait(
                     _shape(0.913, 0.913),
-                    "Assumption: all lengths go with the distance of ridges, 0.913 of the default's",
+                    "Assumption: all lengths go with the distance of ridges, 0.913 of the fitted finger's",
                 ),
                 Trait(
-                    _stiffer(1.17),
+                    _moduli(1.17),
                     f"Young's modulus is 17 % higher for women ({_STIFFNESS}). Assumption: in all soft layers alike, "
-                    "and the default is a man's",
+                    "and the fitted finger is a man's",
                 ),
             ),
         ),
         "child": NamedFinger(
             "a child of 3 to 10 years",
             (
+                *_FITTED_FINGER,
                 Trait(
                     {"geometry.ridge_wavelength": 354e-6},
                     f"Mean of 21 children of 4 to 10 years. {_RIDGES}",
@@ -162,173 +224,53 @@ FINGERS = MappingProxyType(
                 Trait(
                     _shape(0.733, 0.876) | {"geometry.ridge_count": 65},
                     "Index fingers of 160 children of 3 to 10 years have a mean diameter, by girth, of 15 mm (doi "
-                    "10.1016/j.aanat.2010.03.002, abstract); the default has 17.1 mm. Assumption: outline, bone, nail "
-                    "and pad have this scale, 0.876, and layers that of the ridges, 0.733; as many ridges as cover the "
-                    "palmar half; stiffness, friction and roughness are the default's",
+                    "10.1016/j.aanat.2010.03.002, abstract); the fitted finger has 17.1 mm. Assumption: outline, bone, "
+                    "nail and pad have this scale, 0.876, and layers that of the ridges, 0.733; as many ridges as "
+                    "cover the palmar half; stiffness, friction and roughness are the fitted finger's",
                 ),
             ),
         ),
-        "elderly": NamedFinger(
+        "old": NamedFinger(
             "a person of some 60 years or older",
             (
+                *_FITTED_FINGER,
                 Trait(
-                    _stiffer(1.27),
+                    _moduli(1.27),
                     "Surface waves on a man's finger take 3.2 m/s at 26 years and 3.6 m/s at 58, so that the modulus "
                     f"grows by 27 % ({_STIFFNESS}). Assumption: in all soft layers alike",
                 ),
                 Trait(
-                    {"friction": _DRY["friction"], "roughness.young": _DRY["roughness.young"]},
+                    {"friction": 0.2, "roughness.young": 3.2e6},
                     "Moisture and friction are lower (doi 10.1038/s41598-018-23688-6, abstract). Assumption: as those "
                     "of the dry finger",
                 ),
-                _DRY_CIRCUIT,
             ),
             MOISTURE,
         ),
         "callused": NamedFinger(
             "a finger with calluses, of manual work or strings",
             (
+                *_FITTED_FINGER,
                 Trait(
-                    {"geometry.sc_thickness": 850e-6},
-                    "Assumption: twice the default. No measured callus was read; 0.3 mm was read of one finger (doi "
-                    "10.1098/rsif.2012.0467, a caption)",
+                    {"geometry.sc_thickness": 2 * _SC},
+                    "Assumption: twice the fitted finger's. No measured callus was read",
                 ),
             ),
         ),
-        "dry": NamedFinger("a dry finger", (*_surface(_DRY), _DRY_CIRCUIT), MOISTURE),
-        "moist": NamedFinger(
-            "a moist finger, by sweat or after a while on glass", (*_surface(_MOIST), _MOIST_CIRCUIT), MOISTURE
+        "dry": NamedFinger(
+            "a finger drier than the fitted one",
+            (
+                *_FITTED_FINGER,
+                Trait(
+                    {"friction": 0.2},
+                    "Moist skin has 1.6 times the friction of dry skin: palms on paper, suede and tape have 1.56, 1.69 "
+                    f"and 1.61 ({_FRICTION}). Assumption: so on glass, with the fitted finger halfway between",
+                ),
+                Trait({"roughness.young": 3.2e6}, _OF_SURFACE),
+            ),
+            MOISTURE,
         ),
     }
 )
 """Fingers by name."""
 assert tuple(FINGERS) == FingerName.__args__  # type: ignore[attr-defined]
-
-# -- changes of a scene, and keys that they make meaningless ---------------------------------------------------
-DEFAULT_HISTORY = ("f_ext", "voltage", "slide_length")
-"""Keys of the default loads, which a history replaces."""
-_RECORD = ("geometry", "materials", "roughness", "electric", "slices", "output", "numerics")  # tables of every record
-_SHAPE = (*(name for name in Fingertip.model_fields if name != "sc_thickness"), "file_sha256")
-_REPLACED = {
-    "history": (*DEFAULT_HISTORY, "force"),
-    "force": ("f_ext",),
-    "f_ext": ("force",),
-    "slices.height": ("slices.radius", "slices.length"),
-    "geometry.file": tuple(f"geometry.{name}" for name in _SHAPE),
-}
-"""Keys that another one makes meaningless: those of a preset, and of a scene that is changed, give way to it."""
-_START = {"contact": 20e-6, "receptor": 40e-6, "interface": 120e-6, "growth": 0.5}  # m, but for the growth
-_START_AT_SITES = 10e-6  # m; coarser elements do not resolve the tips of 6 µm: halving them does not show the error
-
-
-def start(tolerances: Mapping[str, Any]) -> dict[str, float]:
-    """Return the element sizes (m) from which a scene with accuracies by quantity starts."""
-    return _START | ({"receptor": _START_AT_SITES} if tolerances.get("sed") is not None else {})
-
-
-def presets(data: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what the finger and the accuracy of a scene give, by dotted key."""
-    name, accuracy = data.get("finger"), data.get("accuracy")
-    found = dict(FINGERS[name].values) if isinstance(name, str) and name in FINGERS else {}
-    sizes = start(accuracy) if isinstance(accuracy, Mapping) and accuracy else {}
-    return found | {f"mesh.{key}": size for key, size in sizes.items()}
-
-
-def with_presets(data: Mapping[str, Any], laws: Mapping[str, type]) -> Mapping[str, Any]:
-    """Return the data of a scene with the values of its presets.
-
-    A key that is given wins, and so does one that makes it meaningless (:data:`_REPLACED`), or a law that is given as
-    an object, of one's own, or without such a parameter; ``laws`` has those of the package by name.
-    """
-    found, gone = data, set(_replaced(data))
-    for key, value in presets(data).items():
-        if key not in gone and _takes(found, key.split("."), laws):
-            found = _put(found, key.split("."), value)
-    return found
-
-
-def preset_keys(data: Mapping[str, Any], laws: Mapping[str, type], default: Callable[[], Any]) -> list[str]:
-    """Return the dotted keys for which a preset may stand: those that are not given.
-
-    In the record of a run, which gives every key, they are those that have the default value or that of a preset.
-
-    Args:
-        data: nested tables.
-        laws: of the package, by name.
-        default: gives the default scene.
-    """
-    values = presets(data)
-    keys = dict.fromkeys(key for finger in FINGERS.values() for key in finger.values) | values
-    if any(data.get(name) is None for name in _RECORD):
-        return [key for key in keys if _takes(data, key.split("."), laws)]
-    scene = default()
-    return [key for key in keys if _value_at(data, key) in (values.get(key), reduce(getattr, key.split("."), scene))]
-
-
-def without(data: Mapping[str, Any], keys: Sequence[str]) -> dict[str, Any]:
-    """Return the data of a scene without some dotted keys."""
-    found = dict(data)
-    for key in keys:
-        if _value_at(found, key) is not None:
-            found = _put(found, key.split("."), None)
-    return found
-
-
-def changed(present: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the data of a scene with changes, without the keys that the changes make meaningless.
-
-    Args:
-        present: the keys that are given so far.
-        changes: values by key, as for :meth:`fingerpad.scene.Scene.replace`.
-    """
-    no_mesh = ["geometry.file_sha256"] if "file" in (changes.get("geometry") or {}) else []
-    return _merged(without(present, [*_replaced(changes), *no_mesh]), changes)
-
-
-def _replaced(data: Mapping[str, Any]) -> Iterator[str]:
-    """Yield the keys that others of nested tables make meaningless."""
-    for given, keys in _REPLACED.items():
-        yield from keys if _value_at(data, given) is not None else ()
-
-
-def _merged(present: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a table with changes: tables are merged, all else is replaced."""
-    found = dict(present)
-    for key, value in changes.items():
-        before = found.get(key)
-        both = isinstance(value, Mapping) and isinstance(before, Mapping) and _same_law(before, value.get("law"))
-        found[key] = _merged(before, value) if both else value  # type: ignore[arg-type]
-    return found
-
-
-def _same_law(present: Mapping[str, Any], name: Any) -> bool:
-    """Return whether changes of a table are not of another law than the table's."""
-    kind = present.get("law")
-    names = (f"{kind.__module__}:{kind.__qualname__}", kind.__name__) if isinstance(kind, type) else ()
-    return name in (None, kind, *names)
-
-
-def _takes(table: Any, parts: Sequence[str], laws: Mapping[str, type]) -> bool:
-    """Return whether a value may be put at a place: nothing else stands there or on the way."""
-    if not isinstance(table, Mapping):
-        return False
-    if len(parts) > 1:
-        return _takes(table.get(parts[0], {}), parts[1:], laws)
-    law = table.get("law")
-    law = laws.get(law) if isinstance(law, str) else law
-    known = "law" not in table or (isinstance(law, type) and is_dataclass(law) and parts[0] in keys_of(law))
-    return known and parts[0] not in table
-
-
-def _put(table: Mapping[str, Any], parts: Sequence[str], value: Any) -> dict[str, Any]:
-    """Return nested tables with a value at a place; without it where it is None."""
-    inner = value if len(parts) == 1 else _put(table.get(parts[0], {}), parts[1:], value)
-    rest = {key: each for key, each in table.items() if key != parts[0]}
-    return rest if inner is None else {**rest, parts[0]: inner}
-
-
-def _value_at(table: Any, key: str) -> Any:
-    """Return the value at a dotted key of nested tables, None where there is none."""
-    for part in key.split("."):
-        table = table.get(part) if isinstance(table, Mapping) else None
-    return table

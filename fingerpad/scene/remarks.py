@@ -13,10 +13,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fingerpad.scene.drive import drive_of, leak_in_words, remains
-from fingerpad.scene.fingers import ADULT, FINGERS
+from fingerpad.scene.fingers import FINGERS, PAPER
 from fingerpad.scene.law_keys import UnresolvedLaw
 from fingerpad.scene.materials import LAYERS
 from fingerpad.scene.messages import clip, show
+from fingerpad.scene.presets import named, value_at
 from fingerpad.scene.viscosity import elastic, viscous_layers
 from variational.attraction.circuit import GapCircuit
 from variational.caution import Caution
@@ -163,25 +164,20 @@ def _remains_in_words(scene: "Scene", circuit: GapCircuit) -> str:
 
 def finger_in_words(scene: "Scene") -> list[str]:
     """Return who a scene's finger is, keys of its name with other values, and its remark; none of the default one."""
-    if scene.finger == ADULT:
+    if scene.finger == PAPER:
         return []
     finger, other = FINGERS[scene.finger], _changed(scene)
     more = f"; otherwise: {', '.join(other)}" if other else ""
     count = len(finger.values) - len(other)
     words = f"finger {scene.finger}, {finger.words}: {count} keys by its name (docs/assumptions.md){more}"
-    return [words, finger.remark]
+    rows = f"its values are fitted to {', '.join(finger.fitted_to)} of data/findings.toml"
+    return [words, rows, finger.remark]
 
 
 def _changed(scene: "Scene") -> list[str]:
     """Return the keys of the finger's name that have other values in the scene."""
-
-    def value(key: str) -> Any:
-        found: Any = scene
-        for part in key.split("."):
-            found = getattr(elastic(found), part, None)
-        return found
-
-    return [key for key, usual in FINGERS[scene.finger].values.items() if value(key) != usual]
+    record = scene.parameters()
+    return [key for key, usual in named(record).items() if value_at(record, key) != usual]
 
 
 # -- cautions ------------------------------------------------------------------------------------------

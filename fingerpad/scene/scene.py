@@ -14,7 +14,7 @@ from pydantic import BeforeValidator, Field, PrivateAttr, ValidationError, model
 
 from fingerpad import notebook
 from fingerpad.scene.drive import Drive, Electric, drive_of, refuse_drives
-from fingerpad.scene.fingers import ADULT, DEFAULT_HISTORY, FingerName, changed, preset_keys, with_presets, without
+from fingerpad.scene.fingers import PAPER, FingerName
 from fingerpad.scene.keys import every
 from fingerpad.scene.law_code import digest, folder_of, imported
 from fingerpad.scene.law_keys import UnresolvedLaw, kept
@@ -42,6 +42,7 @@ from fingerpad.scene.parameters import (
     centre_force,
     refuse_beside_mesh,
 )
+from fingerpad.scene.presets import DEFAULT_HISTORY, changed, preset_keys, with_presets, without
 from fingerpad.scene.reading import flat, plain, put_all, read_scene
 from fingerpad.scene.viscosity import elastic, refuse_beside, viscous_layers
 from fingerpad.scene.waveform import Waveform
@@ -86,8 +87,8 @@ class Scene(Table):
     adhesion: Annotated[Adhesion, ADHESION] = NO_ADHESION
     """Adhesion of skin to the screen without a voltage: a table of a law of adhesion. It acts beside the electrostatic
     attraction. By default there is none."""
-    finger: FingerName = "adult"
-    """Finger by its name (docs/assumptions.md). A given key wins over the name's. "adult" is the default finger.
+    finger: FingerName = "paper"
+    """Finger by its name (docs/assumptions.md). A given key wins over the name's. "paper" is the default finger.
     Its tissue and leak act under a drive; a constant voltage has no losses."""
     geometry: Geometry = Geometry()
     mesh: MeshSize = MeshSize()
@@ -279,7 +280,7 @@ class Scene(Table):
     def parameters(self) -> dict[str, Any]:
         """Return every parameter in use, ready for JSON; as a scene it gives the same run again."""
         unused = {"history"} if self.history is None else {*DEFAULT_HISTORY}
-        unused |= {*["accuracy"] * (self.accuracy is None), *["finger"] * (self.finger == ADULT)}
+        unused |= {*["accuracy"] * (self.accuracy is None), *["finger"] * (self.finger == PAPER)}
         unused |= {"force" if self.force is None else "f_ext"}
         found = self.model_dump(mode="json", exclude=unused)
         if self.geometry.file is not None:  # whose mesh has its own shape and sizes

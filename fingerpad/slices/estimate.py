@@ -5,7 +5,7 @@ slip, at the scene's force. The press is on the path's mesh, whose elements are 
 final mesh. The slices away from the centre bear less. Their attraction and contact length are those
 of the model "cylinders" (:mod:`fingerpad.reduced.cylinders`) over the contact lengths of this press, scaled to
 the run's own state at the centre; their indentation is that of the press, scaled to its own. Full slip alone, as in a
-sweep of it, has no press; then it is the closed form's, of the default finger or of one similar to it.
+sweep of it, has no press; then it is the closed form's, where the finger has one.
 ``docs/newtons.md`` has the error of this estimate beside traces of the full model. A scene with a ``force`` computes
 the traces.
 """
@@ -142,7 +142,7 @@ def _closed_form(scene: Scene) -> list[ContactState]:
         return cylinders.Cylinders().over_forces(still, forces, "charged", cylinders.solve)
     except SceneError:
         raise TraceError(
-            "full slip alone has no press, and the closed form has none of this finger; states='all' has it"
+            "full slip alone has no press, and the closed form has none of this finger; states='all' or fp.press has it"
         ) from None
 
 

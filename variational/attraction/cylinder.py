@@ -19,11 +19,12 @@ surfaces are under that pressure (Forsbach et al. 2023, Eqs. 3, 4 and 13):
 
 .. math:: 2 a p_c = f + 2 \sigma c, \qquad d_{eq} = d_{eq}(p_c).
 
-Without voltage this is Hertz's law. The force f is given, and a follows from the second equation. E* may grow with p_c,
-as in a ridge that friction shears. The gap at c grows with m then, which leaves one m at each p_c, and one equation in
-p_c. It can have several roots: that of the highest pressure is the branch in contact, on which the loop over the scales
-contracts; others are unstable, or states of a ridge that has not jumped on the screen yet. Where the highest root
-vanishes the ridge is past its pull-off fold and there is none.
+Without voltage this is Hertz's law. A tip that is no cylinder (:mod:`~variational.attraction.tip`) has its own force
+and gap in the place of those with R. The force f is given, and a follows from the second equation. E* may grow with
+p_c, as in a ridge that friction shears. The gap at c grows with m then, which leaves one m at each p_c, and one
+equation in p_c. It can have several roots: that of the highest pressure is the branch in contact, on which the loop
+over the scales contracts; others are unstable, or states of a ridge that has not jumped on the screen yet. Where the
+highest root vanishes the ridge is past its pull-off fold and there is none.
 """
 
 from collections.abc import Callable
@@ -34,6 +35,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from variational.attraction.dielectric import VACUUM_PERMITTIVITY
+from variational.attraction.tip import Tip
 from variational.roughness.closure import Closure
 
 Array = NDArray[np.floating[Any]]
@@ -80,17 +82,18 @@ class _Loads:
     """External force per length (N/m)."""
     modulus: Array
     """Of each ridge (Pa)."""
+    tip: Tip
 
     def __getitem__(self, chosen: NDArray[np.intp]) -> "_Loads":
-        return _Loads(self.f[chosen], self.modulus[chosen])
+        return _Loads(self.f[chosen], self.modulus[chosen], self.tip[chosen])
 
 
 @dataclass(frozen=True)
 class Cylinder:
-    """A ridge's tip; SI units."""
+    """A ridge; SI units."""
 
-    radius: float
-    """R (m)."""
+    tip: Tip
+    """Its shape; where it differs from load to load its arrays have the shape (loads,)."""
     modulus: float | Array
     """Plane strain modulus E* (Pa): of all loads, or of each, shape (loads,)."""
     h_0: float
@@ -114,7 +117,7 @@ class Cylinder:
         f = np.asarray(f, dtype=float)
         if not np.all(f > 0):
             raise NoEquilibriumError(f"the force on a ridge is {f[~(f > 0)][0]:g} N/m; it must be greater than 0")
-        loads = _Loads(f, np.broadcast_to(np.asarray(self.modulus, dtype=float), f.shape))
+        loads = _Loads(f, np.broadcast_to(np.asarray(self.modulus, dtype=float), f.shape), self.tip)
         count, every = len(f), len(_PRESSURES)
         grid = loads[np.tile(np.arange(count), every)]
         beyond, values = (each.reshape(every, count) for each in self._excess(_PRESSURES, voltage, grid))
@@ -146,11 +149,9 @@ class Cylinder:
     # -- the gap at c ----------------------------------------------------------------------------------
     def _half_width(self, loads: _Loads, beyond: Array, sigma: Array) -> tuple[Array, Array]:
         """Return a (m) at m - 1, and its derivative with respect to m."""
-        stiffness = np.pi * loads.modulus / (2 * self.radius)
         root = np.sqrt(beyond * (2 + beyond))
-        pull = 2 * sigma * root
-        both = np.sqrt(pull**2 + 2 * stiffness * loads.f)
-        return (pull + both) / stiffness, 2 * sigma * (1 + beyond) / root * (1 + pull / both) / stiffness
+        a, by_pull = loads.tip.half_width(loads.modulus, loads.f, 2 * sigma * root)
+        return a, 2 * sigma * (1 + beyond) / root * by_pull
 
     def _edge(self, loads: _Loads, sigma: Array, reach: Array, near: Array | None = None) -> Array:
         """Return m - 1 where the gap at c is the reach of the attraction.
@@ -172,12 +173,12 @@ class Cylinder:
             beyond = np.exp(y)
             m, root = 1 + beyond, np.sqrt(beyond * (2 + beyond))
             angle, logarithm = np.log1p(beyond + root), np.log1p(beyond)  # arcosh m, ln m
-            round_part, pulled_part = m * root - angle, root * angle - m * logarithm
+            pulled, pulled_part = 4 * sigma / (np.pi * loads.modulus), root * angle - m * logarithm
             a, slope = self._half_width(loads, beyond, sigma)
-            bent, pulled = a / self.radius, 4 * sigma / (np.pi * loads.modulus)
-            gap = bent * a / 2 * round_part + pulled * a * pulled_part
-            grows = slope * (bent * round_part + pulled * pulled_part)
-            grows += bent * a * root + pulled * a * (m / root * angle - logarithm)
+            gap, by_a, by_m = loads.tip.gap(a, beyond, root, angle)
+            gap += pulled * a * pulled_part
+            grows = slope * (by_a + pulled * pulled_part)
+            grows += by_m + pulled * a * (m / root * angle - logarithm)
             return np.log(gap / reach), beyond * grows / gap
 
         low, high, y = (np.full_like(sigma, np.log(end)) for end in (_SMALLEST, _LARGEST, 1.0))
@@ -256,8 +257,3 @@ def _roots(function: Callable[[Array], Array], low: tuple[Array, Array], high: t
         t = np.where((phi**2 < xi) & ((1 - phi) ** 2 < 1 - xi), inverse, 0.5)
         t = np.clip(t, np.minimum(limit, 0.5), np.maximum(1 - limit, 0.5))
     return np.where(abs(f_1) < abs(f_2), x_1, x_2)
-
-
-def hertz_modulus(radius: float, f: ArrayLike, length: ArrayLike) -> Array:
-    """Return the modulus E* (Pa) of the cylinder that has a contact length (m) under a force (N/m), uncharged."""
-    return np.asarray(4 * radius * np.asarray(f) / (np.pi * (np.asarray(length) / 2) ** 2))

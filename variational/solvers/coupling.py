@@ -102,9 +102,13 @@ class Coupling:
         self.solver, self.observer, self.closure = solver, observer, closure
         self.tolerance, self.cap, self.by_gap = tolerance, cap, by_gap
         self.history = CouplingHistory()
-        ridges = len(observer.surface.ridge_numbers)
-        self.d_eq = np.full(ridges, np.nan) if closure is None else air_gaps(closure, np.zeros(ridges))
+        self.d_eq = self.open_gaps()
         self.gain = np.full_like(self.d_eq, np.nan)
+
+    def open_gaps(self) -> Array:
+        """Return the air gaps of ridges without contact (m), shape (ridges,); NaN without a closure."""
+        ridges = len(self.observer.surface.ridge_numbers)
+        return np.full(ridges, np.nan) if self.closure is None else air_gaps(self.closure, np.zeros(ridges))
 
     def set_air_gaps(self, d_eq: Array) -> None:
         """Impose air gaps (m), shape (ridges,)."""

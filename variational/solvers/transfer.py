@@ -24,6 +24,10 @@ good a solution as u. So the body is moved on by :math:`\delta` and the anchors 
 its cone, none can stick while Newton's method moves the skin by less than :math:`\delta`, and what is solved for is the
 state of full slip itself, of which the old mesh's history is no part. In a state with sticking points the history does
 remain the old mesh's, interpolated, with the error that its path made.
+
+**More skin that can touch.** A ridge that could not touch on the old mesh has the history of the valley beside it, and
+the air gap of one without contact. So a path goes on where more of the skin must be able to touch than was meshed for
+it.
 """
 
 from dataclasses import replace
@@ -59,21 +63,16 @@ def restore(snapshot: StateSnapshot, coupling: Coupling, slide: float = 0.0) -> 
             friction on the skin, and farther than the skin will move when the state is solved for.
 
     Raises:
-        ValueError: another body or other ridges; on every rank.
+        ValueError: another body; on every rank.
     """
     problem, solver = coupling.solver.problem, coupling.solver
-    numbers = problem.surface.ridge_numbers
-    if not set(numbers) <= set(snapshot.d_eq):
-        raise ValueError(
-            f"the state has ridges {min(snapshot.d_eq)} to {max(snapshot.d_eq)} that can touch and the mesh "
-            f"{min(numbers)} to {max(numbers)}; the state must have all of them"
-        )
+    known = [(k, j) for k, j in enumerate(problem.surface.ridge_numbers) if j in snapshot.d_eq]
     nodes = problem.V.tabulate_dof_coordinates()[:, :2]
     u, outside = interpolate(snapshot, nodes)
     farthest = float(np.max(problem.mesh.comm.allgather(outside)))
     if farthest > _OUTSIDE:
         raise ValueError(f"a node lies {farthest:.3g} triangles outside the state's mesh; it is of another body")
-    for k, j in enumerate(numbers):
+    for k, j in known:
         skin, on_ridge = snapshot.skin[j], problem.surface.nodes(problem.V, k)
         there = place(skin, skin.position, nodes[on_ridge]) - nodes[on_ridge]
         lower = there[:, 1] < u[on_ridge, 1]
@@ -83,8 +82,11 @@ def restore(snapshot: StateSnapshot, coupling: Coupling, slide: float = 0.0) -> 
     solver.set_displacement(u + shift, snapshot.bone + shift)
     solver.control = replace(snapshot.control, x=snapshot.control.x + slide)
     problem.voltage.value = snapshot.voltage
-    coupling.set_air_gaps(np.array([snapshot.d_eq[j] for j in numbers]))
-    coupling.gain = np.array([snapshot.gain[j] for j in numbers])
+    d_eq, gain = coupling.open_gaps(), np.full_like(coupling.gain, np.nan)
+    for k, j in known:
+        d_eq[k], gain[k] = snapshot.d_eq[j], snapshot.gain[j]
+    coupling.set_air_gaps(d_eq)
+    coupling.gain = gain
 
     state = coupling.observer.state()
     reference = np.stack(reference_of_points(problem, state), axis=-1)
@@ -96,9 +98,9 @@ def restore(snapshot: StateSnapshot, coupling: Coupling, slide: float = 0.0) -> 
     followed = problem.history.followed(state.history)
     for field in problem.history.skin:
         relative = np.zeros_like(state.x)
-        for k, j in enumerate(numbers):
-            mine, ridge = problem.surface.ridge == k, snapshot.skin[j]
-            along = (reference[mine] - ridge.origin) @ ridge.chord
+        for k, j in enumerate(problem.surface.ridge_numbers):
+            mine, ridge = problem.surface.ridge == k, snapshot.skin[min(snapshot.skin, key=lambda i: abs(i - j))]
+            along = (reference[mine] - ridge.origin) @ ridge.chord  # of another ridge beyond an end, in a valley
             relative[mine] = np.interp(along, ridge.along, ridge.history[field.name])
         back = 0.0 if field.follows is None else slide
         restored[field.name] = followed[field.name] - back + relative

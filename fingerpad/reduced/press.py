@@ -1,0 +1,165 @@
+"""A finger's press without voltage: what its closed form has of geometry, layers and contact.
+
+A :class:`Press` has the length in contact, the ridges in contact and the indentation over the external force. It does
+not depend on voltage, coating, roughness or friction. So the closed form of :mod:`fingerpad.reduced.cylinders` answers
+for every scene whose finger has one, whatever its shape and layers are.
+
+The press of the default finger and those of the fingers by name are data of the package (``presses.json``); others are
+made once (:mod:`fingerpad.runs.press`) and kept in the cache folder of the user, ``FINGERPAD_CACHE``. The name of a
+press is a hash of the scene's tables ``geometry``, ``materials`` and ``contact``, and of how presses are made.
+
+The default finger's is of full runs with a contact size of 10 µm up to 150 N/m, at full slip with a friction
+coefficient of 0.25, of docs/models.json. Beyond, it is the last of these, times the ratios of states on a coarser mesh,
+of docs/loads.json. ``benchmarks.models`` and ``benchmarks.loads`` print the numbers. Other presses have no full slip.
+Their contact is then shorter by :data:`ROLLED`, the mean of full runs of the default and of a flat, soft finger, which
+have 1 to 6 % (docs/presses.json).
+"""
+
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from functools import cache
+from hashlib import sha256
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from fingerpad.results.files import replace_json
+from fingerpad.scene.messages import SceneError, show
+from fingerpad.scene.scene import Scene
+from variational.roughness import gaps
+
+Array = NDArray[np.float64]
+FORCES = (2.0, 3.86, 7.45, 14.4, 27.8, 53.6, 104.0, 200.0)
+"""External forces (N/m) of presses that are made."""
+MESH = {"contact": 1 / 24, "receptor": 1 / 8, "interface": 1 / 4}
+"""Element sizes of the path over the wavelength of the ridges."""
+FINE = 1 / 12
+"""Facets in contact of the states, on which they are solved again, over the wavelength; a sixteenth where it ends."""
+ROLLED = 0.965
+"""Contact length at full slip with a friction coefficient of :data:`KNOWN`, over that of the press."""
+KNOWN = 0.25
+"""Friction coefficient whose shear the contact at full slip has."""
+_TABLES = ("geometry", "materials", "contact")
+_SITES = ("merkel_offset", "meissner_offset", "file", "file_sha256")  # of the geometry, without effect on a press
+_VERSION = 1
+
+
+@dataclass(frozen=True)
+class Press:
+    """The contact of a finger without voltage over growing external forces."""
+
+    forces: tuple[float, ...]
+    """External forces (N/m)."""
+    lengths: Mapping[str, tuple[float, ...]]
+    """Length in contact (m) by state, ``charged``, normal contact, and ``full_slip``."""
+    ridges: Mapping[str, tuple[int, ...]]
+    """Ridges in contact, likewise."""
+    indentations: Mapping[str, tuple[float, ...]]
+    """How far the bone is lowered (m), likewise."""
+
+    @classmethod
+    def of(cls, kept: Mapping[str, Any]) -> "Press":
+        """Return a press from its file; at full slip from that of normal contact, where the file has no other."""
+        found = {name: {state: tuple(values) for state, values in kept[name].items()} for name in _COLUMNS}
+        for name, by_state in found.items():
+            factor = ROLLED if name == "lengths" else 1
+            by_state.setdefault("full_slip", tuple(factor * each for each in by_state["charged"]))
+        return cls(tuple(kept["forces"]), **found)  # type: ignore[arg-type]
+
+    def length(self, f_ext: ArrayLike, state: str) -> Array:
+        """Return the contact length (m) under external forces (N/m) in a state."""
+        return self.interpolate(f_ext, self.lengths[state])
+
+    def ridge_count(self, f_ext: ArrayLike, state: str) -> NDArray[np.int_]:
+        """Return the number of ridges in contact; arguments of :meth:`length`."""
+        return np.maximum(np.rint(self.interpolate(f_ext, self.ridges[state])).astype(int), 1)
+
+    def indentation(self, f_ext: ArrayLike, state: str) -> Array:
+        """Return how far the bone is lowered (m), without voltage; arguments of :meth:`length`.
+
+        A voltage of 200 V moves the bone of the default finger at full slip by up to 6 %.
+        """
+        return self.interpolate(f_ext, self.indentations[state])
+
+    def interpolate(self, f_ext: ArrayLike, values: tuple[float, ...] | tuple[int, ...]) -> Array:
+        """Return power laws through the two neighbours, at the ends through the last two; shape of the forces."""
+        x, y, at = np.log(self.forces), np.log(values), np.log(f_ext)
+        k = np.clip(np.searchsorted(x, at) - 1, 0, len(x) - 2)
+        return np.exp(y[k] + (y[k + 1] - y[k]) * (at - x[k]) / (x[k + 1] - x[k]))
+
+
+_COLUMNS = ("lengths", "ridges", "indentations")
+
+
+def known(scene: Scene) -> Press | None:
+    """Return the press of a scene's finger, None where it has not been made."""
+    return _found(name(scene))
+
+
+def of(scene: Scene) -> Press:
+    """Return the press of a scene's finger.
+
+    Raises:
+        SceneError: it has not been made.
+    """
+    found = known(scene)
+    if found is None:
+        whose = f" {show(scene.finger)}" if "finger" in scene.model_fields_set else ""
+        raise SceneError(
+            f"the finger{whose} of this scene has no press yet, which its closed form needs; fp.press(scene) makes it, "
+            "in about half a minute"
+        )
+    return found
+
+
+def name(scene: Scene) -> str:
+    """Return the name of the press of a scene's finger."""
+    tables = scene.model_dump(mode="json", include=set(_TABLES))
+    for site in _SITES:
+        tables["geometry"].pop(site)
+    made = [_VERSION, FORCES, MESH, FINE]
+    return sha256(json.dumps([tables, made], sort_keys=True).encode()).hexdigest()[:16]
+
+
+def file_of(scene: Scene) -> Path:
+    """Return the file of a press of the user's cache."""
+    return gaps.cache() / f"press_{name(scene)}.json"
+
+
+def keep(scene: Scene, press: Press) -> None:
+    """Write a press into the cache, in which later processes find it.
+
+    Raises:
+        SceneError: there is no room for it, or no permission.
+    """
+    file = file_of(scene)
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        replace_json(file, asdict(press))
+    except OSError as error:
+        raise SceneError(
+            f"the press of this finger cannot be kept in {file.parent} ({error.strerror or error}); name another "
+            "folder by FINGERPAD_CACHE"
+        ) from None
+    _found.cache_clear()
+
+
+@cache
+def shipped() -> Mapping[str, Any]:
+    """Return the presses of the package by name."""
+    kept: dict[str, Any] = json.loads((files("fingerpad.reduced") / "presses.json").read_text(encoding="utf-8"))
+    return kept
+
+
+@cache
+def _found(name: str) -> Press | None:
+    if name in shipped():
+        return Press.of(shipped()[name])
+    try:
+        return Press.of(json.loads((gaps.cache() / f"press_{name}.json").read_text(encoding="utf-8")))
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
