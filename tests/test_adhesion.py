@@ -9,6 +9,7 @@ from scipy.integrate import trapezoid
 
 import fingerpad as fp
 from fingerpad.scene import SceneError
+from fingerpad.slices.pull_off import PULL_OFF
 from geometry import tags
 from geometry.bodies import block
 from geometry.mesh import load
@@ -95,8 +96,8 @@ def test_lifted_finger():
     least = min(result.steps, key=lambda state: state.f_ext)
     assert least.f_ext < 0 < least.f_adhesion
     assert least.f_contact - least.f_adhesion == pytest.approx(least.f_ext, abs=1e-6)
-    assert result.record["pull_off"]["f_ext"] == least.f_ext
-    assert -15e-3 < result.record["pull_off"]["finger"] < 0
+    assert result.record[PULL_OFF]["f_ext"] == least.f_ext
+    assert -15e-3 < result.record[PULL_OFF]["finger"] < 0
     assert any("mN of the whole finger" in note for note in result.notes)
     again = fp.Result.from_xarray(result.to_xarray())
     assert [s.f_adhesion for s in again.steps] == [s.f_adhesion for s in result.steps]

@@ -13,8 +13,8 @@ which may bring a pressure p and a second equation, p = K (J - 1) weakly; p_n an
 :mod:`~variational.contact.friction` and :mod:`~variational.contact.formulation` in one of the formulations
 :mod:`~variational.contact.penalty`, :mod:`~variational.contact.nitsche` (with terms of its own) and
 :mod:`~variational.contact.augmented`; p_el: :mod:`~variational.attraction.electroadhesion`, written as the derivative
-of its potential, to which that of :mod:`~variational.attraction.adhesion` is added where there is one. Without a
-voltage the electrostatic attraction is left out, without a law of friction t_t is. Friction makes the
+of its potential, as is :mod:`~variational.attraction.adhesion`. Without a voltage p_el is left out, without a law of
+friction t_t is. Friction makes the
 derivative unsymmetric. The derivative may carry a shift :math:`\int \eta\, du \cdot v \,dS`, which is no part of the
 equations but of pseudo-transient continuation (:mod:`~variational.solvers.transient`). This module adds up forms and
 never solves.

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from fingerpad.results.data import Cost
 from fingerpad.results.dataset import BY_RIDGE, CHANGED, FILE
 from fingerpad.results.files import FORMAT, read_object
-from fingerpad.results.quantities import CHANGES, RATIOS, SKIN, STABILITY, STEPS, Output
+from fingerpad.results.quantities import CHANGES, SKIN, STABILITY, STEPS, Output
 from fingerpad.results.states import STATES, load_results
 from fingerpad.scene.law_code import foreign
 from fingerpad.scene.messages import SceneError, clip
@@ -124,7 +124,7 @@ def _finger(arrays: Arrays, kept: Mapping[str, Any], outputs: Sequence[Output], 
         if np.isnan(arrays["finger_centre"][k]):
             continue
         slices = columns("slice_", k)
-        for follows in ("pressure", *RATIOS):
+        for follows in ("pressure", "real_over_gross"):
             slices.pop(follows, None)
         places = slices.pop("z"), slices.pop("thickness"), slices.pop("indentation")
         totals[name] = Total(arrays["finger_indentation"][k], *places, arrays["finger_centre"][k], slices)

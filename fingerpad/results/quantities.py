@@ -294,17 +294,11 @@ SLICES = _listed(
     ("gross_width", "m", "width between the outermost touching ridges of the slice"),
     ("pressure", "Pa", "mean contact pressure of the slice over its length in contact"),
     ("real_over_gross", "", "length of the slice in contact over its gross width"),
-    ("shear_stress", "Pa", "friction force of the slice over its length in contact"),
     trace="f_ext f_t f_electrostatic contact_length gross_width",
 )
 """Of the slices of a whole finger."""
-RATIOS = {"real_over_gross": ("contact_area", "gross_area"), "shear_stress": ("f_t", "contact_area")}
-"""Quantities of the whole finger that are ratios of two sums over its slices. Their relative error is that of both."""
 OUTPUTS: tuple[Output, ...] = (
-    Output(
-        "stuck_share", "", lambda state: 1 - state.slipping, "part of the points in contact that stick",
-        "stuck share of the contact", tables=(),
-    ),
+    Output("stuck_share", "", lambda state: 1 - state.slipping, "part of the points in contact that stick", tables=()),
     Output(
         "shear_stress", "kPa", lambda state: abs(state.f_t) / state.contact_length if state.contact_length else 0.0,
         "friction force over the contact length", "shear stress on ridges", 1, tables=("result",),

@@ -258,7 +258,12 @@ BEARING_AREA = BearingArea(Electric().h_0(Fingertip().sc_thickness))
 ROUGHNESS = _RoughnessKey(CLOSURES, BEARING_AREA, of_scene=_insulators, all_laws=True)
 FRICTION = LawKey(FRICTION_LAWS, Coulomb(0.25), number="mu_f")
 NO_ADHESION = Dugdale(0.0)
-ADHESION = LawKey(ADHESION_LAWS, NO_ADHESION)
+ADHESION = Annotated[Adhesion, LawKey(ADHESION_LAWS, NO_ADHESION)]
+
+
+def adheres(law: Adhesion | UnresolvedLaw) -> bool:
+    """Return whether a scene's law of adhesion attracts; one of one's own in results that were read does."""
+    return isinstance(law, UnresolvedLaw) or law.work > 0
 
 
 def refuse_thickness(closure: Any, h_0: float) -> None:

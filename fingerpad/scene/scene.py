@@ -29,6 +29,7 @@ from fingerpad.scene.materials import (
     NO_ADHESION,
     ROUGHNESS,
     Materials,
+    adheres,
     refuse_thickness,
 )
 from fingerpad.scene.messages import SceneError, first_error, show
@@ -84,9 +85,8 @@ class Scene(Table):
     """Loads to reach one after the other, at most 1000, in place of the default press, charge and slide."""
     friction: Annotated[float | Friction, FRICTION] = 0.25
     """Friction coefficient mu_0 of skin on the screen, or a table of a law of friction."""
-    adhesion: Annotated[Adhesion, ADHESION] = NO_ADHESION
-    """Adhesion of skin to the screen without a voltage: a table of a law of adhesion. It acts beside the electrostatic
-    attraction. By default there is none."""
+    adhesion: ADHESION = NO_ADHESION
+    """Adhesion of skin to the screen without a voltage, a table of a law; by default none."""
     finger: FingerName = "paper"
     """Finger by its name (docs/assumptions.md). A given key wins over the name's. "paper" is the default finger.
     Its tissue and leak act under a drive; a constant voltage has no losses."""
@@ -132,8 +132,7 @@ class Scene(Table):
             self.accuracy.refuse(self.output.receptors, self.friction)
         if self.history is not None:
             steps = math.inf if self.electric.follows == "mean" else self.numerics.step_scale
-            adheres = isinstance(self.adhesion, UnresolvedLaw) or self.adhesion.work > 0
-            refuse_contradictions(self.history, given, self.output.errors, steps, adheres)
+            refuse_contradictions(self.history, given, self.output.errors, steps, adheres(self.adhesion))
         if self.force is not None and isinstance(self.friction, Friction) and self.friction.memory is not None:
             raise ValueError(
                 "force is given and friction has a memory, and the sum of slices has no common time; give f_ext or a "
@@ -245,8 +244,7 @@ class Scene(Table):
 
     def adhesion_law(self) -> Adhesion | None:
         """Return the law of adhesion without a voltage, None without; raises as :meth:`closure` does."""
-        law: Adhesion = _known("adhesion", self.adhesion)
-        return law if law.work else None
+        return _known("adhesion", self.adhesion) if adheres(self.adhesion) else None
 
     def solids(self) -> dict[int, Material]:
         """Return the material of each layer's tag; raises as :meth:`closure` does."""

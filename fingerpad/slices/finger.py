@@ -6,12 +6,12 @@ from functools import cached_property
 from types import SimpleNamespace
 
 from fingerpad import notebook
-from fingerpad.results.quantities import FINGER, FRICTION, MODEL, RATIOS, Output, plus_minus_of
+from fingerpad.results.quantities import FINGER, FRICTION, MODEL, Output, plus_minus_of
 from fingerpad.results.states import STATES, WORDS, called
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.parameters import Slices
 from fingerpad.slices import errors
-from fingerpad.slices.total import Total, at_force, profile
+from fingerpad.slices.total import RATIOS, Total, at_force, profile
 from fingerpad.slices.trace import Trace
 
 _SAME_FORCE = 1e-9

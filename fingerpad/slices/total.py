@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq
 
-from fingerpad.results.quantities import RATIOS
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.parameters import Slices
 from fingerpad.slices.trace import Trace, borne
@@ -26,6 +25,8 @@ _TIP = 1e-12  # least square of the scale at the tip of an ellipsoid, whose slop
 _SMALLEST_FORCE = 1e-300  # N, of a logarithm
 AREAS = {"contact_length": "contact_area", "gross_width": "gross_area"}
 """Columns of a slice whose sums have names of their own."""
+RATIOS = {"real_over_gross": ("contact_area", "gross_area"), "shear_stress": ("f_t", "contact_area")}
+"""Quantities of the whole finger that are ratios of two sums. Their relative error is that of both."""
 
 
 def _lowest(of: Callable[[Floats], Floats], ends: tuple[float, float], count: int) -> tuple[float, float, bool]:
@@ -227,10 +228,9 @@ class Total:
     def slices(self) -> dict[str, Array]:
         """Return all values of the slices by name; m, N/m and Pa, shape (slices,)."""
         places = {"z": self.z, "thickness": self.thickness, "indentation": self.depth}
-        column = {sum_: name for name, sum_ in AREAS.items()}
-        of = {name: [self.columns[column.get(each, each)] for each in pair] for name, pair in RATIOS.items()}
-        ratios = {name: np.divide(a, b, out=np.zeros_like(a), where=b > 0) for name, (a, b) in of.items()}
-        return places | self.columns | {"pressure": self.pressure} | ratios
+        length, gross = (self.columns[name] for name in AREAS)
+        share = np.divide(length, gross, out=np.zeros_like(length), where=gross > 0)
+        return places | self.columns | {"pressure": self.pressure, "real_over_gross": share}
 
 
 def at_indentation(profile: Profile, trace: Trace, delta: float, count: int) -> Total:

@@ -27,7 +27,6 @@ Array = NDArray[np.float64]
 _SMALLEST = 1e-3  # step below which a load is given up, over the largest
 _SMALLEST_SLIP = 1 / 32  # the same from full slip to full slip, where a path is the other way
 _BEHIND = 3e-3  # m, how far anchors of friction are put behind the skin, which moves by less between two loads
-_OF_REACH, _OF_DEPTH = 0.25, 0.2  # largest step of a bone that lifts adhering skin, over the reach and its depth
 _MANY = 0.5  # part of the contact points that slip, above which they are expected to slip on when the bone moves
 _STEP_OVER = 1.5  # step tried where the loop over the scales cycles, over the one that led there
 # To an equilibrium from a state from elsewhere.
@@ -174,16 +173,6 @@ class Continuation:
         """Return whether the screen bears the body, which the roundoff of a body in the air does not; collective."""
         return self._touches() and float(self.solver.reaction[1]) > 0
 
-    def _peels(self, way: Way) -> float:
-        """Return the largest part of a target that one step may have where a bone lifts adhering skin; collective.
-
-        The force is most negative within the reach of the adhesion, where a usual step would go past it.
-        """
-        law, aim, height = self.problem.interface.adhesion, way.target.bone_height, self._now.height
-        if law is None or aim is None or aim <= height or not self._touches():
-            return 1.0
-        return max(_OF_REACH * law.reach, -_OF_DEPTH * height) / (aim - way.start.height)
-
     def _clearance(self) -> float:
         """Return how far the lowest point of the skin is above the screen (m); collective."""
         lowest = float(self.surface_state.y.min(initial=np.inf))
@@ -207,7 +196,8 @@ class Continuation:
                 slow = NotConverged(f"TOO_SMALL_STEPS, {most} of them, do not get to the end of the load", False)
                 raise StepFailed(self._describe(target, p.part, slow)) from slow
             step = min(p.step, 1 - p.part, self.step_scale * way.longest(p.part, self.problem.shortest_time))
-            step = min(step, self.step_scale * self._peels(way))
+            if (law := self.problem.interface.adhesion) and self._touches():
+                step = min(step, self.step_scale * way.peels(self._now.height, law.reach))
             if 1 - p.part - step < 0.05 * step:
                 step = 1 - p.part
             attempt, within = Attempt(), step
