@@ -14,10 +14,9 @@ which may bring a pressure p and a second equation, p = K (J - 1) weakly; p_n an
 :mod:`~variational.contact.penalty`, :mod:`~variational.contact.nitsche` (with terms of its own) and
 :mod:`~variational.contact.augmented`; p_el: :mod:`~variational.attraction.electroadhesion`, written as the derivative
 of its potential, as is :mod:`~variational.attraction.adhesion`. Without a voltage p_el is left out, without a law of
-friction t_t is. Friction makes the
-derivative unsymmetric. The derivative may carry a shift :math:`\int \eta\, du \cdot v \,dS`, which is no part of the
-equations but of pseudo-transient continuation (:mod:`~variational.solvers.transient`). This module adds up forms and
-never solves.
+friction t_t is. Friction makes the derivative unsymmetric. The derivative may carry a shift :math:`\int \eta\, du \cdot
+v \,dS`, which is no part of the equations but of pseudo-transient continuation (:mod:`~variational.solvers.transient`).
+This module adds up forms and never solves.
 """
 
 from collections.abc import Callable, Mapping

@@ -29,6 +29,7 @@ from typing import Any
 from fingerpad.model import drive_loads
 from fingerpad.results.terminal import about
 from fingerpad.scene import Numerics, Scene
+from fingerpad.scene.materials import adheres
 from fingerpad.scene.messages import SceneError, qualify
 from fingerpad.scene.viscosity import viscous_layers
 from geometry import sizing
@@ -164,7 +165,7 @@ class FingerModel:
         self.contact: Formulation = scene.contact.law
         self.by_gap = scene.contact.length == "gap"
         self.friction = scene.friction_law()
-        self.adhesion = scene.adhesion_law()
+        self.adhesion = scene.adhesion if adheres(scene.adhesion) else None
         self.closure = scene.closure() if options.voltage else None
         self.h_0 = scene.h_0
         self.loads = drive_loads.loads(scene)

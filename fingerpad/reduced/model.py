@@ -10,6 +10,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from fingerpad.results.quantities import Output
+from fingerpad.scene.materials import adheres
 from fingerpad.scene.messages import SceneError, show
 from fingerpad.scene.viscosity import viscous_layers
 from fingerpad.slices import traces
@@ -190,7 +191,7 @@ def check_supported(scene: "Scene", model: str) -> None:
         why = f"{viscous[0]}.viscosity is given; {timeless} leave the viscosity out"
     elif law is not None and law.memory is not None:
         why = f"friction is {type(law).__name__}; {timeless} another law"
-    elif scene.adhesion_law() is not None:
+    elif adheres(scene.adhesion):
         why = f"adhesion is {scene.adhesion}, which the model '{model}' does not have; use the model 'full'"
     elif scene.geometry.file is not None:
         why = (

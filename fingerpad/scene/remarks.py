@@ -15,7 +15,7 @@ import numpy as np
 from fingerpad.scene.drive import drive_of, leak_in_words, remains
 from fingerpad.scene.fingers import FINGERS, PAPER
 from fingerpad.scene.law_keys import UnresolvedLaw
-from fingerpad.scene.materials import LAYERS
+from fingerpad.scene.materials import LAYERS, adheres
 from fingerpad.scene.messages import clip, show
 from fingerpad.scene.presets import named, value_at
 from fingerpad.scene.viscosity import elastic, viscous_layers
@@ -63,8 +63,8 @@ def used(scene: "Scene") -> dict[str, str]:
     charged = any(load.voltage for load in scene.loads())
     circuit = scene.electric.circuit(scene.geometry.sc_thickness)
     found["attraction"] = _call("electrostatic", {"h_0": scene.h_0}, _OF_SCENE) if charged else "none"
-    adhesion = scene.adhesion_law()
-    found |= {} if adhesion is None else {"adhesion": f"{_words(adhesion)}, {adhesion.work:.3g} J/m²"}
+    if adheres(law := scene.adhesion):
+        found["adhesion"] = _words(law) + ("" if isinstance(law, UnresolvedLaw) else f", {law.work:.3g} J/m²")
     found |= {} if circuit.lossless else {"circuit": circuit_in_words(circuit)}
     found["closure"] = _words(scene.roughness) if charged else "none"
     return found | ({} if scene.geometry.file is None else {"mesh": scene.geometry.file})

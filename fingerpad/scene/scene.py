@@ -30,6 +30,7 @@ from fingerpad.scene.materials import (
     ROUGHNESS,
     Materials,
     adheres,
+    refuse_memory,
     refuse_thickness,
 )
 from fingerpad.scene.messages import SceneError, first_error, show
@@ -49,7 +50,6 @@ from fingerpad.scene.viscosity import elastic, refuse_beside, viscous_layers
 from fingerpad.scene.waveform import Waveform
 from geometry.parameters import MeshSize
 from geometry.units import Finite, Table, computed, within
-from variational.attraction.adhesion import Adhesion
 from variational.contact.friction import Friction, law_of
 from variational.materials.material import Material
 from variational.roughness.closure import Closure
@@ -133,11 +133,7 @@ class Scene(Table):
         if self.history is not None:
             steps = math.inf if self.electric.follows == "mean" else self.numerics.step_scale
             refuse_contradictions(self.history, given, self.output.errors, steps, adheres(self.adhesion))
-        if self.force is not None and isinstance(self.friction, Friction) and self.friction.memory is not None:
-            raise ValueError(
-                "force is given and friction has a memory, and the sum of slices has no common time; give f_ext or a "
-                "history"
-            )
+        refuse_memory(self.force, self.friction)
         refuse_beside(viscous_layers(self.materials), {"force": self.force, "accuracy": self.accuracy})
         refuse_thickness(self.roughness, self.h_0)
         refuse_drives(self.drives(), self.electric, self.geometry.sc_thickness)
@@ -241,10 +237,6 @@ class Scene(Table):
     def friction_law(self) -> Friction | None:
         """Return the law of friction, None without friction; raises as :meth:`closure` does."""
         return law_of(_known("friction", self.friction))
-
-    def adhesion_law(self) -> Adhesion | None:
-        """Return the law of adhesion without a voltage, None without; raises as :meth:`closure` does."""
-        return _known("adhesion", self.adhesion) if adheres(self.adhesion) else None
 
     def solids(self) -> dict[int, Material]:
         """Return the material of each layer's tag; raises as :meth:`closure` does."""
