@@ -38,7 +38,7 @@ OF_SCENE = {"of scene": True}
 def parameter(
     low: float, high: float, unit: str = "", *, zero: bool = False, sides: int = 1, default: Any = MISSING
 ) -> Any:
-    """Return the field of a law's number, with what scenes, their schema and their reference read of it.
+    """Return the field of a law's number, with what scenes and their reference read of it.
 
     Args:
         low: smallest value that a scene may give, of the amount where ``sides`` is 2.
