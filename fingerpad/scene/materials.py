@@ -270,7 +270,8 @@ def refuse_memory(force: float | None, friction: Any) -> None:
     """Refuse a law of friction with a memory beside a force on the whole finger (N), by ``ValueError``."""
     if force is not None and isinstance(friction, Friction) and friction.memory is not None:
         raise ValueError(
-            "force is given and friction has a memory, and the sum of slices has no common time; give f_ext or a history"
+            "force is given and friction has a memory, and the sum of slices has no common time; give f_ext or a "
+            "history"
         )
 
 

@@ -132,8 +132,7 @@ class Scene(Table):
         if self.history is not None:
             steps, follows = self.numerics.step_scale, self.electric.follows
             refuse_contradictions(self.history, given, self.output.errors, steps, follows)
-            if not adheres(self.adhesion):
-                refuse_floating(self.history)
+            refuse_floating(() if adheres(self.adhesion) else self.history)
         refuse_memory(self.force, self.friction)
         refuse_beside(viscous_layers(self.materials), {"force": self.force, "accuracy": self.accuracy})
         refuse_thickness(self.roughness, self.h_0)
@@ -197,8 +196,8 @@ class Scene(Table):
     def laws(self) -> dict[str, Any]:
         """Return what each key has that holds a law: an object, or the number of a friction coefficient."""
         layers = {f"materials.{name}": elastic(getattr(self.materials, name)) for name in LAYERS}
-        found = {"friction": self.friction, "adhesion": self.adhesion, "roughness": self.roughness}
-        return found | {"contact": self.contact.law} | layers
+        own = {name: getattr(self, name) for name in ("friction", "adhesion", "roughness")}
+        return own | {"contact": self.contact.law} | layers
 
     def own_laws(self) -> dict[str, Any]:
         """Return the laws of one's own by key."""
