@@ -80,7 +80,7 @@ WORDS = {
     "docs/command": {"": ["Windows", "WSL", "macOS", "Docker", "conda", "install"], "## Targets": ["target"]},
     "docs/drive": {"": ["alternating voltage", "frequency", "waveform"]},
     "docs/measured": {"## What is felt": ["nerve", "perception", "spike"]},
-    "docs/assumptions": {"## Fingers by name": ["child", "old", "moisture", "sweat", "callus"]},
+    "docs/fingers": {"": ["child", "old", "moisture", "sweat", "callus"]},
     "docs/newtons": {"": ["newton", "contact area"]},
     "docs/scene": {"## `[electric]`": ["coating", "insulator", "dielectric", "permittivity"]},
     "docs/laws": {"## Viscous layers": ["viscous", "relaxation", "creep"]},

@@ -20,7 +20,7 @@ With p = 2 both are the same. :func:`kernel` has k and p of a profile of cosines
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from typing import Any, Self
 
@@ -110,7 +110,7 @@ class Power(Tip):
     def modulus(self, f: ArrayLike, length: ArrayLike) -> Array:
         """Return the modulus; the power law goes on to other lengths than that of the tip."""
         a = np.asarray(length) / 2
-        return np.asarray(f / (self.depth * (a / self.half) ** self.power))
+        return np.asarray(np.asarray(f) / (self.depth * (a / self.half) ** self.power))
 
     def half_width(self, modulus: Array, f: Array, pull: Array) -> tuple[Array, Array]:
         """Return the root by Newton's method, which is monotone from the right: the force is convex in a."""
@@ -135,7 +135,7 @@ class Power(Tip):
         return k * open_, p * k / a * open_, k * 2 / np.pi * p * m ** (p - 1) * inside
 
 
-def kernel(heights: Sequence[float], wavelength: float, a: ArrayLike) -> tuple[Array, Array]:
+def kernel(heights: ArrayLike, wavelength: float, a: ArrayLike) -> tuple[Array, Array]:
     r"""Return k (m) and the power p of a profile about half-lengths a (m) of its contact, which is at the crest.
 
     With :math:`g_0 = \sum_j s_j (1 - \cos q_j x)`: :math:`k = \frac{\pi a}{2} \sum_j s_j q_j J_1(q_j a)` and
@@ -149,6 +149,7 @@ def kernel(heights: Sequence[float], wavelength: float, a: ArrayLike) -> tuple[A
     from scipy.special import j0, j1
 
     a = np.asarray(a, dtype=float)[..., None]
+    heights = np.asarray(heights, dtype=float)
     q = 2 * np.pi / wavelength * np.arange(1, len(heights) + 1)
     k, slope = (
         (np.pi * a / 2 * heights * q * j1(q * a)).sum(-1),
