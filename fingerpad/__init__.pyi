@@ -2,6 +2,8 @@
 
 import geometry as geometry
 from fingerpad import afferents as afferents
+from fingerpad.measurements.calibrate import Calibration as Calibration
+from fingerpad.measurements.calibrate import calibrate as calibrate
 from fingerpad.measurements.compare import compare as compare
 from fingerpad.model.body import Body as Body
 from fingerpad.reduced.closed_form import ClosedForm as ClosedForm
