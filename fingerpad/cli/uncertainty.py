@@ -61,10 +61,8 @@ def main(argv: Sequence[str]) -> int:
     study, head = Study.of(result), result.headline
     rows = indices(study, [_PEOPLE if name in SPREADS else name for name in study.names])
     place = next(k for k, row in enumerate(rows) if row["factor"] == _PEOPLE) + 1
-    each = [
-        row | {"factor": _OF_PEOPLE + row["factor"]} for row in indices(study, study.names) if row["factor"] in SPREADS
-    ]
-    rows[place:place] = each
+    each = [row for row in indices(study, study.names) if row["factor"] in SPREADS]
+    rows[place:place] = [row | {"factor": _OF_PEOPLE + row["factor"]} for row in each]
     echo(f"Parts of the variance of ln {head.symbol} of the {head.of}, {head.at}, about {head.value:.3g}:")
     echo(output.text(_COLUMNS, rows))
     echo("\n".join(study.words()))
@@ -142,9 +140,7 @@ class Study:
         if _SOLUTION not in self.names:
             found.append("Left out: the error of the closed form, which is not known here.")
         if self.lost:
-            found.append(
-                f"{self.lost} fingers have no number, since ridges adhere; the largest of the others is taken."
-            )
+            found.append(f"{self.lost} fingers have no number, since ridges adhere; they take the largest of others.")
         return found
 
 
