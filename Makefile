@@ -16,7 +16,7 @@
 # make measured  findings on human fingers beside this model's numbers; docs/measured.md, a quarter of an hour
 # make measured ROW=softer  one finding, or all of a finger; prints them
 # make drive  friction over frequency and waveform of the voltage; docs/drive.md, a minute
-# make fingers    friction of fingers by name side by side; docs/assumptions.md
+# make fingers    friction of fingers by name side by side; docs/fingers.md
 # make viscosity  how skin relaxes, energy of random histories, friction after a step of voltage; docs/laws.md
 # make loads  seeded scenes of people's loads beside the closed form; docs/closed_form.md, an hour or two in pieces of twenty minutes
 # make performance  counts, ratios and seconds, part by part, on an idle machine; docs/performance.md, half an hour

@@ -1,15 +1,21 @@
 """A finger's press is made once, kept, and used again; and the tips of its ridges, which need not be cylinders."""
 
+import json
+
 import numpy as np
 import pytest
 from scipy.integrate import quad
 
 import fingerpad as fp
+from benchmarks.presses import REDUCED, regions
 from fingerpad.reduced import press
 from fingerpad.reduced.closed_form import closed_form
+from fingerpad.reduced.cylinder_errors import find
 from fingerpad.reduced.cylinders import over_forces
 from fingerpad.reduced.press import Press
 from fingerpad.runs import press as making
+from fingerpad.scene.fingers import FINGERS
+from tests.commands import kept
 from tests.small_finger import NINE
 from variational.attraction.tip import Power, Round, kernel
 
@@ -93,7 +99,17 @@ def test_forces_of_flat_tips_balance():
     assert still.contact_length == pytest.approx(OWN.length(50.0, "charged"), rel=1e-9)
     (found,) = over_forces(scene.replace(voltage=150.0), [50.0], "full_slip", OWN)
     assert found.f_contact == pytest.approx(50.0 + found.f_electrostatic, rel=1e-9)
-    assert found.contact_length > OWN.length(50.0, "full_slip")
+    assert found.contact_length > (1 - found.f_t**2 / (50.0 * press.ROLL)) * OWN.length(50.0, "charged")
+
+
+def test_friction_rolls_ridges_off():
+    """The contact that is left is the press's without f_T^2 / (f F) of it, beside roundoff of the ridges' number."""
+    friction = {"law": "Derjaguin", "mu_f": 0.0, "tau_0": 10e3}
+    scene = fp.Scene(geometry=FLAT, voltage=0.0, friction=friction)
+    (found,) = over_forces(scene, [50.0], "full_slip", OWN)
+    left = 1 - found.f_t**2 / (50.0 * press.ROLL)
+    stiffer = 0.95  # of ridges by their shear, at least
+    assert stiffer * left < found.contact_length / OWN.length(50.0, "charged") < left < 0.95
 
 
 def test_closed_form_has_the_numbers_of_the_model():
@@ -108,6 +124,11 @@ def test_closed_form_has_the_numbers_of_the_model():
     assert found.share == pytest.approx(found.contact / found.gross)
 
 
+@pytest.mark.parametrize("name", FINGERS)
+def test_package_has_the_press_of_each_finger(name):
+    assert press.name(fp.Scene(finger=name)) in press.shipped()
+
+
 @pytest.mark.slow
 def test_press_of_a_small_finger(cache, monkeypatch):
     """Its contact grows, and it is longer than on the mesh of the path, whose facets end outside of it."""
@@ -118,3 +139,17 @@ def test_press_of_a_small_finger(cache, monkeypatch):
     for values in (found.lengths["charged"], found.indentations["charged"]):
         assert np.all(np.diff(values) > 0)
     assert set(found.ridges["charged"]) <= {3, 5, 7, 9}
+
+
+# -- the fingers whose error is known ------------------------------------------------------------------------------
+def test_errors_of_fingers_are_those_of_the_kept_states():
+    """And a result has them, in their range: of the whole finger none, which was not compared."""
+    numbers = kept("presses.json")
+    assert json.loads((REDUCED / "finger_errors.json").read_text(encoding="utf-8")) == json.loads(
+        json.dumps(regions(numbers))
+    )
+    for finger, states in numbers.items():
+        scene = fp.Scene(finger=finger, f_ext=states[-1]["f_ext"], voltage=100.0)
+        found = fp.run(scene, model="cylinders")
+        assert found.full_slip.error.mu_app > 0, finger
+        assert not find(scene.replace(friction=0.9), 1.0) and not find(scene.replace(f_ext=300.0), 1.0)

@@ -82,11 +82,10 @@ def compute(args: argparse.Namespace) -> None:
         raise SystemExit(f"{min(unknown)} is neither a row that is computed nor one of {', '.join(fingers.NAMES)}")
     wanted = chosen(args.names, every)
     summaries = harness.run(scenes(wanted), args, _LIMIT)
-    found = {
-        name: {"numbers": numbers, "verdict": verdict} for name, numbers, verdict in judged(wanted, args.out, args.docs)
-    }
-    for name, each in found.items():
-        print(f"{each['verdict']:>12}  {name}: {_ours(name, each['numbers'])}")
+    found = {}
+    for name, numbers, verdict in judged(wanted, args.out, args.docs):
+        found[name] = {"numbers": numbers, "verdict": verdict}
+        print(f"{verdict:>12}  {name}: {_ours(name, numbers)}")
     if not args.names:
         missing = [name for name, summary in summaries.items() if "failure" in summary]
         harness.keep("measured", {"rows": found, "missing": missing}, harness.made(summaries.values()), args.docs)

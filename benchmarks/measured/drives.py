@@ -121,7 +121,7 @@ def _square_above(case: Case) -> Row:
 
 def _threshold_shape(case: Case) -> Row:
     """Judge whether thresholds over the frequency have a least one inside, for a sine and for a square."""
-    at, holds, numbers = _here(case.finger), [], {}
+    at, holds, numbers = _here(case.finger), list[bool](), dict[str, float]()
     for wave in ("sine", "square"):
         levels = [of_wave(circuit(at), wave, f, at) for f in SHAPE]
         found = np.array([level.relative_to(levels[0]) for level in levels])

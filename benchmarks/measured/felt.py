@@ -82,7 +82,7 @@ def onset() -> Scene:
 def step(f_ext: float, preset: str | None = None) -> Scene:
     """A voltage that rises, stays and falls in sliding under a load (N/m); layers of a viscous preset relax before."""
     times = [0.0, RISE, RISE + STEP, FALL, FALL + STEP, LAST]
-    table = {"waveform": "file", "times": times, "voltages": [0.0, 0.0, VOLTS, VOLTS, 0.0, 0.0]}
+    table = {"waveform": "file", "times": times, "values": [0.0, 0.0, VOLTS, VOLTS, 0.0, 0.0]}
     last = {"name": "step", "bone_x_by": SPEED * LAST, "voltage": table}
     if preset is None:
         return _scene(_press(f_ext), _SLIDE, last)

@@ -82,7 +82,7 @@ def _area_form(case: Case, least: float, form: rules.Form, other: rules.Form) ->
     """Judge a form of the gross area over the force from a least one (N) on, beside another one."""
     force, area = case.finger.sums(case.finger.pressed, "gross_area", least)
     misfit, beside = (rules.of_each(each, force, area).misfit for each in (form, other))
-    exponent, error = _both(case.finger, lambda of: np.polyfit(*np.log(of.sums(of.pressed, "gross_area")), 1)[0])
+    exponent, error = _both(case.finger, lambda of: rules.exponent(*of.sums(of.pressed, "gross_area")))
     numbers = {"misfit": misfit, "other": beside, "exponent": float(exponent), "error": error, "most": force[-1]}
     return numbers, by_form((misfit,), (beside,))
 
@@ -222,7 +222,7 @@ def _mus(finger: Finger) -> tuple[Array, Array]:
 
 
 def _exponent(finger: Finger) -> float:
-    return float(np.polyfit(*np.log(_mus(finger)), 1)[0])
+    return rules.exponent(*_mus(finger))
 
 
 def _over_load(case: Case, judge: Callable[[Case, Array], str]) -> Row:
@@ -241,8 +241,7 @@ def _power_law(case: Case) -> Row:
     mu, force = case.finger.mu, np.array(case.finger.forces)
     misfit, line = (rules.of_each(form, force, mu).misfit for form in (rules.falling_power, rules.falling_line))
     verdict = by_form((misfit,), (line,)) if _factor(mu) > 1 + SIMILAR else rules.MISS
-    exponent = float(np.polyfit(np.log(force), np.log(mu), 1)[0])
-    return {"misfit": misfit, "line": line, "factor": _factor(mu), "exponent": exponent}, verdict
+    return {"misfit": misfit, "line": line, "factor": _factor(mu), "exponent": rules.exponent(force, mu)}, verdict
 
 
 def _speed(case: Case, wanted: bool) -> Row:
@@ -355,14 +354,10 @@ def _delay(known: Mapping[str, Any]) -> Row:
 
 # -- adhesion --------------------------------------------------------------------------------------------------
 def _pull_off(case: Case) -> Row:
-    """Judge the largest tension of the whole finger while it is lifted, from slices that all were pressed."""
+    """Judge the largest tension of the whole finger while it is lifted."""
     if not adheres(case.finger.scene):
         return {"value": 0.0}, rules.MISS
-    states, pad = case.finger.path("lift", "lift"), case.finger.scene.slices
-    depth, force = np.array([(-s.bone_height, s.f_ext) for s in states]).T[:, ::-1]  # growing depths
-    z = np.linspace(-pad.length / 2, pad.length / 2, 2001)
-    every = [np.trapezoid(np.interp(d - z**2 / (2 * pad.radius), depth, force, left=0.0), z) for d in depth]
-    tension = -1e3 * float(min(every))
+    tension = -1e3 * float(case.finger.run("lift").result.record["pull_off"]["finger"])
     return {"value": tension}, rules.by_rule(case.row, tension, tension)
 
 

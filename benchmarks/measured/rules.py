@@ -51,13 +51,8 @@ def by_rule(row: Finding, low: float, high: float) -> str:
     if row.spread is not None and row.rule == "spread":
         return by_spread(low, high, row.bounds[0], row.spread)
     sign = np.sign(row.bounds[0])
-    if min(sign * low, sign * high) <= 0:
-        return MISS
-    return by_factor(
-        *sorted((sign * low, sign * high)),
-        *sorted(sign * each for each in row.bounds),
-        {"ratio": RATIO}.get(row.rule, 1.0),
-    )
+    (least, most), (low, high) = (sorted(sign * each for each in ends) for ends in (row.bounds, (low, high)))
+    return by_factor(low, high, least, most, RATIO if row.rule == "ratio" else 1.0) if low > 0 else MISS
 
 
 def by_form(misfits: Sequence[float], others: Sequence[float]) -> str:
@@ -127,6 +122,11 @@ def of_largest(form: Form, x: Array, y: Array) -> Fit:
         return float(np.sqrt(np.mean((y - scale(curve, y) * curve) ** 2)) / y.max())
 
     return _least(rest, form)
+
+
+def exponent(x: Array, y: Array) -> float:
+    """Return the exponent of a power law, fitted to logarithms."""
+    return float(np.polyfit(np.log(x), np.log(y), 1)[0])
 
 
 def scale(curve: Array, y: Array) -> float:

@@ -11,6 +11,7 @@ from scipy.spatial import cKDTree
 
 from fingerpad.model.options import FingerModel, refuse_mesh, refuse_sizes
 from fingerpad.model.state import contact_state, force_error, refuse_unbalanced
+from fingerpad.scene.controls import ends_of
 from geometry import fingertip, mesh, meshfile, tags
 from geometry.profiles import Profiles
 from variational.attraction.electroadhesion import ELECTROSTATIC
@@ -141,11 +142,11 @@ def assembled(
     body = Body(
         tagged,
         {tag: solid for tag, solid in model.solids.items() if tag in layers},
-        Interface(model.contact, model.friction, model.h_0, attraction, model.share),
+        Interface(model.contact, model.friction, model.h_0, attraction, model.share, model.adhesion),
         model.closure,
         element=numerics.element,
         points=numerics.quadrature_points,
-        force_scale=max((load.f_ext for load in model.loads if load.f_ext), default=1.0),
+        force_scale=max((ends_of(load.f_ext)[1] for load in model.loads if load.f_ext), default=1.0),
         tolerance=numerics.tolerance,
         mirror=tagged.facets(tags.SYMMETRY) if half else None,
         coupling_tolerance=numerics.coupling_tolerance,

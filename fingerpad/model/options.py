@@ -29,6 +29,8 @@ from typing import Any
 from fingerpad.model import drive_loads
 from fingerpad.results.terminal import about
 from fingerpad.scene import Numerics, Scene
+from fingerpad.scene.controls import ends_of
+from fingerpad.scene.materials import adheres
 from fingerpad.scene.messages import SceneError, qualify
 from fingerpad.scene.viscosity import viscous_layers
 from geometry import sizing
@@ -139,6 +141,7 @@ class FingerModel:
         contact: formulation of the contact.
         by_gap: whether a ridge's length is that of a small gap, and not that under contact pressure.
         friction: law of friction; None without friction.
+        adhesion: law of adhesion without a voltage; None without.
         closure: the microscale; None where there is never a voltage.
         h_0: effective insulator thickness (m).
         loads: to reach one after the other, with voltages of Eq. 3.
@@ -163,6 +166,7 @@ class FingerModel:
         self.contact: Formulation = scene.contact.law
         self.by_gap = scene.contact.length == "gap"
         self.friction = scene.friction_law()
+        self.adhesion = scene.adhesion if adheres(scene.adhesion) else None
         self.closure = scene.closure() if options.voltage else None
         self.h_0 = scene.h_0
         self.loads = drive_loads.loads(scene)
@@ -234,8 +238,8 @@ def by_rule(scene: Scene) -> Scene:
     if scene.mesh.touching_half_arc is not None:
         return scene
     finger, law = scene.geometry, scene.friction_law()
-    force = max((load.f_ext for load in scene.loads() if load.f_ext), default=0.0)
-    depth = max((-load.bone_height for load in scene.loads() if load.bone_height), default=0.0)
+    force = max((ends_of(load.f_ext)[1] for load in scene.loads()), default=0.0)
+    depth = max((-ends_of(load.bone_height)[0] for load in scene.loads()), default=0.0)
     ridges = _RIDGES * Fingertip().ridge_wavelength / finger.ridge_wavelength * (force / _FORCE) ** _WIDENS
     radius = finger.width**2 / (2 * finger.height)
     lowered = math.sqrt(2 * radius * max(depth, 0.0)) / finger.ridge_wavelength

@@ -9,7 +9,8 @@ times the share of the attraction in the contact force:
 
 .. math:: \frac{\Delta \mu_{app}}{\mu_{app}} = \frac{f_{el}}{f_{ext} + f_{el}} \, \frac{\Delta f_{el}}{f_{el}}.
 
-It vanishes without voltage. :func:`data` is the same table for the calculator, whose ``errors.js`` reads it.
+It vanishes without voltage. Of another law of friction it is at least that of the length in contact. :func:`data` is
+the same table for the calculator, whose ``errors.js`` reads it.
 """
 
 import json
@@ -23,9 +24,11 @@ from typing import Any, NamedTuple
 
 from fingerpad.results.quantities import FINGER, QUANTITIES
 from fingerpad.results.states import WORDS
+from fingerpad.scene.fingers import PAPER
 from fingerpad.scene.keys import every
 from fingerpad.scene.messages import show
 from fingerpad.scene.reading import flat
+from fingerpad.scene.remarks import coefficient
 from fingerpad.scene.scene import Scene
 from variational.caution import Caution
 from variational.state import ContactState
@@ -53,6 +56,8 @@ class Region:
     The range :data:`PULL` is one of results."""
     errors: _Bands
     """Errors over the printed value, of the attraction and of lengths: of a section by its states, of a finger."""
+    finger: str = PAPER
+    """Name of the finger whose other keys it has."""
 
 
 class Outside(NamedTuple):
@@ -82,13 +87,20 @@ _DEFAULT_SCREEN = Region(
 )
 
 
+def _read(file: str) -> tuple[Region, ...]:
+    """Return the regions of a file of this folder."""
+    made = json.loads((files("fingerpad.reduced") / file).read_text(encoding="utf-8"))
+    made = [each | {"ranges": {key: tuple(ends) for key, ends in each["ranges"].items()}} for each in made]
+    return tuple(Region(**each) for each in made)
+
+
 def _regions() -> tuple[Region, ...]:
     """Return the regions: that of the default screen, and those that ``python3 -m benchmarks.loads`` has written."""
-    text = (files("fingerpad.reduced") / "cylinder_errors.json").read_text(encoding="utf-8")
-    made = [each | {"ranges": {key: tuple(ends) for key, ends in each["ranges"].items()}} for each in json.loads(text)]
-    return (_DEFAULT_SCREEN, *(Region(**each) for each in made))
+    return (_DEFAULT_SCREEN, *_read("cylinder_errors.json"))
 
 
+FINGERS = _read("finger_errors.json")
+"""Errors of other fingers by name, of ``python3 -m benchmarks.presses``."""
 REGIONS = _regions()
 """Errors that cover the full model's states: tests/test_known_error.py and tests/test_loads.py derive them from those
 of docs/models.json and docs/loads.json."""
@@ -117,7 +129,7 @@ def find(scene: Scene, pull: float = 0.0) -> Region | None:
         pull: attraction at full slip over that force.
     """
     given = _given(scene, pull)
-    return next((region for region in REGIONS if not any(_outside(given, region))), None)
+    return next((region for region in (*REGIONS, *FINGERS) if not any(_outside(given, region))), None)
 
 
 def outside(scene: Scene, pull: float = 0.0) -> list[Outside]:
@@ -127,7 +139,7 @@ def outside(scene: Scene, pull: float = 0.0) -> list[Outside]:
     Arguments are those of :func:`find`.
     """
     given = _given(scene, pull)
-    found = ([*_outside(given, region)] for region in reversed(REGIONS))
+    found = ([*_outside(given, region)] for region in reversed((*FINGERS, *REGIONS)))
     return min(found, key=lambda keys: (len(keys), sum(each.far for each in keys)))
 
 
@@ -138,7 +150,7 @@ def cautions(scene: Scene, pull: float = 0.0) -> list[Caution]:
     """
     keys = outside(scene, pull)
     tables = Counter(each.key.partition(".")[0] for each in keys)
-    many = {table: Outside(table, "another one", "that of the default scene") for table in tables if tables[table] > 2}
+    many = {table: Outside(table, "another one", "that of a finger by name") for table in tables if tables[table] > 2}
     words = dict.fromkeys(str(many.get(each.key.partition(".")[0], each)) for each in keys)
     return [Caution("error_unknown", f"the error of this model is not known here: {'; '.join(words)}")] if words else []
 
@@ -149,16 +161,16 @@ def _given(scene: Scene, pull: float) -> dict[str, Any]:
     given.pop("f_ext" if scene.force is not None else "force", None)
     if scene.drive is None:
         given = {key: value for key, value in given.items() if not key.startswith(_LOSSES)}
-        given |= {key: value for key, value in _default().items() if key.startswith(_LOSSES)}
     return given
 
 
 def _outside(given: Mapping[str, Any], region: Region) -> Iterator[Outside]:
     """Yield the keys in which values are outside of a region."""
-    default, units, others = _default(), _units(), set[str]()
+    default, units, others = _default(region.finger), _units(), set[str]()
     if "force" in given and "force" not in region.ranges:
         yield Outside("force", _span(given["force"], given["force"], units["force"]), "sections alone")
     tables = (key for key in {**default, **given} if key.partition(".")[0] in _TABLES)
+    tables = (key for key in tables if key in given or not key.startswith(_LOSSES))
     for key in dict.fromkeys([*region.ranges, *tables]):
         value, unit, table = given.get(key), units.get(key, ""), key.partition(".")[0]
         ends: tuple[Any, Any] = region.ranges.get(key, (default.get(key),) * 2)
@@ -182,8 +194,8 @@ def _number(value: Any) -> bool:
 
 
 @cache
-def _default() -> dict[str, Any]:
-    return flat(Scene().parameters())
+def _default(finger: str = PAPER) -> dict[str, Any]:
+    return flat(Scene(finger=finger).parameters())  # type: ignore[arg-type]
 
 
 @cache
@@ -219,6 +231,8 @@ def at_full_slip(scene: Scene, f_electrostatic: float) -> dict[str, float]:
         return {}
     known = region.errors[name]
     share = known["f_electrostatic"] * pull / (1 + pull)
+    if coefficient(scene) is None:  # a shear stress on the length in contact
+        share = max(share, known["contact_length"])
     return {**known, "mu_app": share, "f_t": share}
 
 
