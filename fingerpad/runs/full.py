@@ -61,10 +61,10 @@ def run(scene: Scene, context: RunContext) -> Result:
     """Reach every load of a scene; refine where it asks for an accuracy; collective.
 
     Where the scene does not give the number of ridges that can touch, a rule of thumb does. Where ridges come near the
-    screen that could not touch, the accepted state is solved for again on a mesh on which they can, and its path goes on.
-    All loads are gone through again where another omitted part of the model turns out to matter: the other half of a
-    finger that may not stay symmetric, or smaller elements where no equilibrium is found without them; and with viscous
-    layers, whose past is that of their mesh. A scene that asks for an accuracy starts coarse.
+    screen that could not touch, the accepted state is solved for again on a mesh on which they can, and its path goes
+    on. All loads are gone through again where another omitted part of the model turns out to matter: the other half of
+    a finger that may not stay symmetric, or smaller elements where no equilibrium is found without them; and with
+    viscous layers, whose past is that of their mesh. A scene that asks for an accuracy starts coarse.
 
     Args:
         scene: what is run.
