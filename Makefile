@@ -13,12 +13,12 @@
 # make verify every number with a known answer, some minutes; docs/verification.md
 # make paper  the statements of the paper beside this model's numbers; docs/paper.md, a quarter of an hour or more
 # make paper FIGURE=6  a figure of the paper; python3 -m benchmarks.paper.figures lists them with their times
-# make measured  measured fingers beside this model's numbers; docs/measured.md, two minutes
+# make measured  findings on human fingers beside this model's numbers; docs/measured.md, a quarter of an hour
+# make measured ROW=softer  one finding, or all of a finger; prints them
 # make drive  friction over frequency and waveform of the voltage; docs/drive.md, a minute
-# make fingers    friction of fingers by name side by side; docs/assumptions.md
+# make fingers    friction of fingers by name side by side; docs/fingers.md
 # make viscosity  how skin relaxes, energy of random histories, friction after a step of voltage; docs/laws.md
 # make loads  seeded scenes of people's loads beside the closed form; docs/closed_form.md, an hour or two in pieces of twenty minutes
-# make feel   what people and nerves were measured to do beside spikes; docs/measured.md, ten minutes
 # make performance  counts, ratios and seconds, part by part, on an idle machine; docs/performance.md, half an hour
 # make calibration  estimated errors beside known ones, scene by scene; docs/errors.md, ten minutes
 # make chart  error over work, one numerical setting after the other; docs/errors.md, half an hour or more
@@ -28,7 +28,7 @@
 
 run := environment/run
 
-.PHONY: help demo lint test check test-pip test-contact test-order fuzz docs notebook pages stale verify paper measured drive fingers viscosity loads feel calibration chart performance
+.PHONY: help demo lint test check test-pip test-contact test-order fuzz docs notebook pages stale verify paper measured drive fingers viscosity loads calibration chart performance
 
 help:
 	@sed -n 's/^# make/make/p' Makefile
@@ -90,7 +90,7 @@ paper:
 	$(run) python3 -m $(if $(FIGURE),benchmarks.paper.figures $(FIGURE),benchmarks.paper)
 
 measured:
-	$(run) python3 -m benchmarks.measured
+	$(run) python3 -m benchmarks.measured $(ROW)
 
 drive:
 	$(run) python3 -m benchmarks.drive
@@ -104,9 +104,6 @@ viscosity:
 loads:
 	$(run) python3 -m benchmarks.loads.fresh
 	$(run) python3 -m benchmarks.loads
-
-feel:
-	$(run) python3 -m benchmarks.feel
 
 calibration:
 	$(run) python3 -m benchmarks.two_meshes

@@ -23,7 +23,6 @@ PAGES = {
     "chart": "benchmarks.chart",
     "drive": "benchmarks.drive",
     "errors": "benchmarks.errors",
-    "feel": "benchmarks.feel.__main__",
     "fingers": "benchmarks.fingers",
     "hero": "benchmarks.hero",
     "loads": "benchmarks.loads.__main__",

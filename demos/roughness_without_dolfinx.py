@@ -19,7 +19,6 @@ from matplotlib.figure import Figure
 
 import fingerpad as fp
 from variational.roughness.spectrum import SelfAffine, power_spectrum
-from variational.roughness.topography import distribution
 
 EPS_0 = 8.854e-12  # F/m
 
@@ -31,10 +30,10 @@ EPS_0 = 8.854e-12  # F/m
 
 # %%
 def analysed(true: SelfAffine, pixels: int):
-    """Return height distribution and fitted spectrum of one synthetic surface, eight times lambda_0 wide."""
+    """Return the heights and the spectrum of one synthetic surface, eight times lambda_0 wide."""
     size = 8 * true.wavelength
     heights = true.surface((pixels, pixels), (size, size), seed=1)
-    return distribution(heights), power_spectrum(heights)
+    return heights, power_spectrum(heights)
 
 
 # %%
@@ -53,7 +52,7 @@ def main(out: str = "results/demos/roughness_without_dolfinx", pixels: str = "25
     draw(Path(out), spectrum, fit, p_c, gap, model)
 
     # The surface is the one that was asked for: one realisation scatters by some per cent, its modes being few.
-    assert abs(heights.h_rms / true.h_rms - 1) < 0.1 and abs(heights.kurtosis - 3) < 0.5
+    assert abs(heights.h_rms / true.h_rms - 1) < 0.1
     assert abs(fit.hurst - true.hurst) < 0.05 and abs(fit.wavelength / true.wavelength - 1) < 0.2 and fit.resolved
     # Parseval: the spectrum holds the mean square height.
     assert np.isclose(spectrum.h_rms, heights.h_rms, rtol=1e-12)

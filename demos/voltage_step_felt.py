@@ -31,7 +31,7 @@ def main(out: str = "results/demos/voltage_step_felt", size: str = "small") -> N
     small = size == "small"
     scene = fp.Scene.load(SCENES / "small_finger.toml") if small else fp.Scene()
     times = np.array([0.0, 0.02, 0.02 + STEP, 0.06, 0.06 + STEP, 0.1])
-    table = {"waveform": "file", "times": times.tolist(), "voltages": [0.0, 0.0, VOLTS, VOLTS, 0.0, 0.0]}
+    table = {"waveform": "file", "times": times.tolist(), "values": [0.0, 0.0, VOLTS, VOLTS, 0.0, 0.0]}
     loads = [
         {"name": "press", "f_ext": 10.0 if small else 75.0},
         {"name": "slide", "bone_x": 800e-6 if small else 3e-3},

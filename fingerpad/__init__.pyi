@@ -19,6 +19,7 @@ from fingerpad.runs.sweep import sweep as sweep
 from fingerpad.runs.sweep_results import Sweep as Sweep
 from fingerpad.scene import Scene as Scene
 from fingerpad.scene import SceneError as SceneError
+from fingerpad.scene.people import people as people
 from variational.attraction.circuit import GapCircuit as GapCircuit
 from variational.attraction.dielectric import ColeCole as ColeCole
 from variational.attraction.dielectric import TabledTissue as TabledTissue

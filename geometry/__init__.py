@@ -9,10 +9,7 @@ from typing import Any
 _HOMES = {
     "block": "geometry.bodies",
     "ridge": "geometry.bodies",
-    "ridges": "geometry.bodies",
     "pad": "geometry.bodies",
-    "foot": "geometry.bodies",
-    "quarter_tube": "geometry.bodies",
     "finger": "geometry.fingertip",
     "file": "geometry.meshfile",
 }

@@ -1,11 +1,10 @@
-"""Small bodies: block, ridge, ridges side by side, round pad, stepped foot, quarter tube, Cook's membrane.
+"""Small bodies: block, ridge, round pad.
 
 Each function returns a :class:`geometry.shape.Shape`. What it refuses, it refuses with a
 :class:`geometry.profiles.GeometryError` when the shape is meshed.
 """
 
 from collections.abc import Sequence
-from numbers import Integral
 
 import gmsh
 import numpy as np
@@ -21,8 +20,8 @@ _MM = 1e3  # gmsh's tolerances suit models in mm
 _SAMPLES = 128  # spline points of a curved bottom
 _GROWTH = 0.25  # increase of the element size per distance from what can touch
 _NEEDED = (tags.BONE_RIM, tags.ridge(0))
-_MOST_RIDGES = 99
 _TOUCHING = 0.6  # part of the ridge's width, about its tip, that is meshed finely
+Point = tuple[float, float]
 
 
 @shape(_NEEDED)
@@ -48,8 +47,10 @@ def block(width: float, height: float, size: float, gap: float = 0.0) -> float:
     x, low, high = width / 2 * _MM, gap * _MM, (gap + height) * _MM
     corners = [geo.addPoint(*xy, 0.0) for xy in ((-x, low), (x, low), (x, high), (-x, high))]
     edges = [geo.addLine(corners[k], corners[(k + 1) % 4]) for k in range(4)]
-    lengths = (width, height, width, height)
-    body = _grid(edges, tuple(1 + int(np.ceil(length / size * (1 - 1e-9))) for length in lengths))
+    for edge, length in zip(edges, (width, height, width, height), strict=True):
+        geo.mesh.setTransfiniteCurve(edge, 1 + int(np.ceil(length / size * (1 - 1e-9))))
+    body = int(geo.addPlaneSurface([geo.addCurveLoop(edges)]))
+    geo.mesh.setTransfiniteSurface(body)
     _groups(body, [edges[0]], *edges[1:])
     gmsh.model.mesh.generate(2)
     return 1 / _MM
@@ -78,36 +79,6 @@ def ridge(
     Raises:
         GeometryError: a length is not positive, the top is not above the grooves, or a facet cannot follow the tip.
     """
-    return _wave([0], size, width, height, amplitude, ends)
-
-
-@shape(_NEEDED)
-def ridges(count: int, size: float, width: float = 483e-6, height: float = 600e-6, amplitude: float = 100e-6) -> float:
-    """Return papillary ridges side by side under one flat top, each as :func:`ridge`.
-
-    They are numbered from left to right. Ridge 0 is the middle one, or the left one of the middle two, and its tip is
-    at x = 0. Facets of ridge k have the tag ``geometry.tags.ridge(k)``; other groups are those of :func:`block`.
-
-    Args:
-        count: how many ridges, 1 to 99.
-        size: length of the facets that can touch (m).
-        width: distance of neighbours (m).
-        height: of the flat top above the screen (m).
-        amplitude: height of the grooves above the tips (m).
-
-    Raises:
-        GeometryError: the count is no whole number from 1 to 99, or what :func:`ridge` refuses.
-    """
-    if isinstance(count, bool) or not isinstance(count, Integral) or not 1 <= count <= _MOST_RIDGES:
-        raise GeometryError(f"count is {count!r}; it must be a whole number from 1 to {_MOST_RIDGES}")
-    first = -((count - 1) // 2)
-    return _wave(range(first, first + count), size, width, height, amplitude)
-
-
-def _wave(
-    numbers: Sequence[int], size: float, width: float, height: float, amplitude: float, ends: Sequence[float] = ()
-) -> float:
-    """Mesh ridges by number; the other arguments and what is raised are those of :func:`ridge`."""
     _refuse_non_positive(size=size, width=width, height=height, amplitude=amplitude)
     if amplitude >= height:
         raise GeometryError(f"amplitude is {amplitude:g} m; it must be below the height, {height:g} m")
@@ -117,15 +88,13 @@ def _wave(
             f"size is {size:g} m, too large for a tip with a radius of {radius:.3g} m; it must be at most twice that"
         )
 
-    def bottom(x: float) -> tuple[float, float]:
+    def bottom(x: float) -> Point:
         return x, amplitude / 2 * (1 - np.cos(2 * np.pi * x / width))
 
     half = _TOUCHING * width / 2
-    along = np.linspace(-width / 2, width / 2, _SAMPLES + 1)
-    fine = np.linspace(-half, half, 1 + int(np.ceil(4 * half / size)))
-    curves = [([bottom(k * width + x) for x in along], 0) for k in numbers]
-    tips = [bottom(k * width + x) for k in numbers for x in fine]
-    return _graded(curves, height, size, tips, _GROWTH, [bottom(x) for x in ends], numbers)
+    along = [bottom(x) for x in np.linspace(-width / 2, width / 2, _SAMPLES + 1)]
+    fine = [bottom(x) for x in np.linspace(-half, half, 1 + int(np.ceil(4 * half / size)))]
+    return _graded([(along, 0)], height, size, fine, [bottom(x) for x in ends])
 
 
 @shape(_NEEDED)
@@ -145,49 +114,21 @@ def pad(size: float, facets: int, radius: float, span: float) -> float:
     """
     _refuse_non_positive(size=size, facets=facets, radius=radius, span=span, flank=span / 2 - facets * size)
 
-    def bottom(x: float) -> tuple[float, float]:
+    def bottom(x: float) -> Point:
         return x, x**2 / (2 * radius)
 
     ends = [-span / 2, -facets * size, facets * size, span / 2]
     curves = [[bottom(x) for x in np.linspace(a, b, _SAMPLES + 1)] for a, b in zip(ends, ends[1:], strict=False)]
     tip = [bottom(x) for x in np.linspace(ends[1], ends[2], 4 * facets + 1)]
-    return _graded(list(zip(curves, (0, 2 * facets, 0), strict=True)), span, size, tip, _GROWTH)
-
-
-@shape(_NEEDED)
-def foot(size: float, half_width: float, step: float, span: float) -> float:
-    """Return a square block with a flat foot on the screen, the rest of its bottom recessed.
-
-    Groups are those of :func:`block`. The step is one facet long.
-
-    Args:
-        size: length of the facets at the foot's edges (m).
-        half_width: of the foot (m).
-        step: height of the recess (m).
-        span: width and height of the block (m).
-
-    Raises:
-        GeometryError: a length is not positive, or the foot leaves no recess.
-    """
-    recess = span / 2 - half_width - size
-    _refuse_non_positive(size=size, half_width=half_width, step=step, span=span, recess=recess)
-    x = [-span / 2, -half_width - size, -half_width, half_width, half_width + size, span / 2]
-    corners = list(zip(x, [step, step, 0.0, 0.0, step, step], strict=True))
-    lines = [([a, b], one) for a, b, one in zip(corners, corners[1:], (0, 1, 0, 1, 0), strict=False)]
-    return _graded(lines, span, size, corners[1:-1], _GROWTH / 2)
-
-
-_Point = tuple[float, float]
+    return _graded(list(zip(curves, (0, 2 * facets, 0), strict=True)), span, size, tip)
 
 
 def _graded(
-    bottom: Sequence[tuple[Sequence[_Point], int]],
+    bottom: Sequence[tuple[Sequence[Point], int]],
     height: float,
     size: float,
-    fine: Sequence[_Point],
-    growth: float,
-    ends: Sequence[_Point] = (),
-    numbers: Sequence[int] = (),
+    fine: Sequence[Point],
+    ends: Sequence[Point] = (),
 ) -> float:
     """Mesh what lies between curves, each a spline through points (m), and a flat top.
 
@@ -196,13 +137,11 @@ def _graded(
         height: of the top (m).
         size: element size at the points ``fine`` (m).
         fine: where elements are smallest.
-        growth: increase of the element size per distance from there.
         ends: points where contact ends, at which elements are smaller still.
-        numbers: ridge of each curve; by default all are ridge 0.
     """
     geo = gmsh.model.geo
 
-    def add(point: _Point) -> int:
+    def add(point: Point) -> int:
         return int(geo.addPoint(point[0] * _MM, point[1] * _MM, 0.0))
 
     first = add(bottom[0][0][0])
@@ -217,9 +156,9 @@ def _graded(
     corners = [last, right, left, first]
     sides = [geo.addLine(*pair) for pair in zip(corners, corners[1:], strict=False)]
     body = geo.addPlaneSurface([geo.addCurveLoop([*curves, *sides])])
-    finest = [(size, growth, fine), (MeshSize(contact=size).edge, FROM_EDGES, ends)]
+    finest = [(size, _GROWTH, fine), (MeshSize(contact=size).edge, FROM_EDGES, ends)]
     cones = [(smallest, slope, [add(point) for point in places]) for smallest, slope, places in finest if places]
-    _groups(body, curves, *sides, numbers=numbers)
+    _groups(body, curves, *sides)
 
     fields = gmsh.model.mesh.field
     grown = []
@@ -234,55 +173,8 @@ def _graded(
     for option in ("MeshSizeExtendFromBoundary", "MeshSizeFromPoints", "MeshSizeFromCurvature"):
         gmsh.option.setNumber(f"Mesh.{option}", 0)
     gmsh.model.mesh.generate(2)
-    if any(len(points) > 2 for points, _ in bottom):
-        curve_edges()
-    return 1 / _MM
-
-
-@shape(_NEEDED)
-def quarter_tube(inner: float, outer: float, divisions: int) -> float:
-    """Return a quarter of a tube's cross-section.
-
-    It lies right of x = 0 and above the tube's axis, which is at twice the outer radius above the screen. The mesh is
-    a regular grid in polar coordinates, halved into triangles, with as many divisions of the wall as of the quarter
-    turn. The outer surface is ridge 0, the inner one the bone's rim, the planes of symmetry are sides.
-
-    Args:
-        inner: inner radius (m).
-        outer: outer radius (m).
-        divisions: of the wall and of the quarter turn.
-
-    Raises:
-        GeometryError: a length is not positive, or the wall has no thickness.
-    """
-    _refuse_non_positive(inner=inner, outer=outer, divisions=divisions)
-    if inner >= outer:
-        raise GeometryError(f"inner is {inner:g} m; it must be below the outer radius, {outer:g} m")
-    geo, axis = gmsh.model.geo, 2 * outer * _MM
-    centre = geo.addPoint(0.0, axis, 0.0)
-    right = [geo.addPoint(radius * _MM, axis, 0.0) for radius in (inner, outer)]
-    top = [geo.addPoint(0.0, axis + radius * _MM, 0.0) for radius in (inner, outer)]
-    edges = [
-        geo.addLine(right[0], right[1]),
-        geo.addCircleArc(right[1], centre, top[1]),
-        geo.addLine(top[1], top[0]),
-        geo.addCircleArc(top[0], centre, right[0]),
-    ]
-    body = _grid(edges, (divisions + 1,) * 4)
-    _groups(body, bottom=[edges[1]], right=edges[0], top=edges[3], left=edges[2])
-    gmsh.model.mesh.generate(2)
     curve_edges()
     return 1 / _MM
-
-
-def _grid(edges: list[int], points: tuple[int, ...]) -> int:
-    """Return a surface of four edges, to be meshed regularly with so many points on each."""
-    geo = gmsh.model.geo
-    for edge, count in zip(edges, points, strict=True):
-        geo.mesh.setTransfiniteCurve(edge, count)
-    body = int(geo.addPlaneSurface([geo.addCurveLoop(edges)]))
-    geo.mesh.setTransfiniteSurface(body)
-    return body
 
 
 def _refuse_non_positive(**lengths: float) -> None:
@@ -293,11 +185,9 @@ def _refuse_non_positive(**lengths: float) -> None:
         raise GeometryError(f"size is {lengths['size']:g} m; it must be at least {LEAST_SIZE:g} m, beyond roundoff")
 
 
-def _groups(body: int, bottom: list[int], right: int, top: int, left: int, *, numbers: Sequence[int] = ()) -> None:
+def _groups(body: int, bottom: list[int], right: int, top: int, left: int) -> None:
     gmsh.model.geo.synchronize()
     gmsh.model.addPhysicalGroup(2, [body], tags.STRATUM_CORNEUM, "stratum corneum")
-    by_ridge = {0: bottom} if not numbers else {k: [curve] for k, curve in zip(numbers, bottom, strict=True)}
-    for k, curves in by_ridge.items():
-        gmsh.model.addPhysicalGroup(1, curves, tags.ridge(k), f"ridge {k}")
+    gmsh.model.addPhysicalGroup(1, bottom, tags.ridge(0), "ridge 0")
     gmsh.model.addPhysicalGroup(1, [top], tags.BONE_RIM, "bone rim")
     gmsh.model.addPhysicalGroup(1, [left, right], tags.SIDES, "sides")

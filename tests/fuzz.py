@@ -35,6 +35,7 @@ from fingerpad.model.options import by_rule, refuse_sizes
 from fingerpad.reduced.cylinders import tip_of
 from fingerpad.results.files import check_folder
 from fingerpad.scene import Scene, SceneError
+from fingerpad.scene.controls import ends_of
 from tests import fuzz_files
 from variational.attraction.cylinder import Cylinder, NoEquilibriumError
 
@@ -267,8 +268,8 @@ def _unready(scene: Scene) -> str:
         horny = scene.materials.stratum_corneum
         tip = tip_of(scene.geometry, np.array([scene.geometry.ridge_wavelength / 4]))
         ridge = Cylinder(tip, 2 * horny.shear_modulus / (1 - horny.poisson), scene.h_0, closure)
-        voltages = (load.wave.peak if load.wave else load.level or 0.0 for load in scene.loads())
-        ridge.under_loads([max(load.f_ext or 1.0 for load in scene.loads()) / 9], max(voltages))[0]
+        voltages = (load.drive.peak if load.drive else load.level or 0.0 for load in scene.loads())
+        ridge.under_loads([max(ends_of(load.f_ext)[1] or 1.0 for load in scene.loads()) / 9], max(voltages))[0]
     except (NoEquilibriumError, SceneError) as error:
         return "" if len(str(error)) < LONGEST else str(error)
     return ""

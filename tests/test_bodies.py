@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose
 from benchmarks.stability import solve, strip
 from benchmarks.stability.solve import Case
 from geometry import tags
-from geometry.bodies import block, pad, quarter_tube, ridge, ridges
+from geometry.bodies import block, pad, ridge
 from geometry.mesh import load
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import GeometryError
@@ -40,26 +40,6 @@ def test_block():
     mean_height = integral(body, tags.STRATUM_CORNEUM, ufl.SpatialCoordinate(body.mesh)[1]) / (0.4 * MM**2)
     assert mean_height == pytest.approx(207 * UM, rel=1e-12, abs=0)
     assert body.ridges() == [0]
-
-
-@pytest.mark.mpi
-def test_ridges_side_by_side():
-    """Each is a ridge at its place: area, top and length of skin are those of four; one alone has the nodes of a ridge.
-
-    Tolerance: chords of 20 um.
-    """
-    size, width = 20 * UM, 483 * UM
-    body, one = load(MPI.COMM_WORLD, ridges(4, size)), load(MPI.COMM_WORLD, ridge(size))
-    alone = load(MPI.COMM_SELF, ridges(4, size))
-    assert body.ridges() == [-1, 0, 1, 2]
-    assert integral(body, tags.STRATUM_CORNEUM) == pytest.approx(4 * integral(one, tags.STRATUM_CORNEUM), rel=1e-3)
-    assert integral(body, tags.BONE_RIM, kind="ds") == pytest.approx(4 * width, rel=1e-9)
-    for k in body.ridges():
-        skin = integral(body, tags.ridge(k), kind="ds")
-        assert skin == pytest.approx(integral(one, tags.ridge(0), kind="ds"), rel=1e-3)
-        x = vertices(alone, alone.facets(tags.ridge(k)))[:, 0]
-        assert (x.min(), x.max()) == pytest.approx(((k - 0.5) * width, (k + 0.5) * width), abs=1e-9)
-    np.testing.assert_array_equal(load(MPI.COMM_WORLD, ridges(1, size)).mesh.geometry.x, one.mesh.geometry.x)
 
 
 def bottom(body) -> np.ndarray:
@@ -90,9 +70,7 @@ def test_pad():
             ridge(240 * UM),
             "size is 0.00024 m, too large for a tip with a radius of 0.000118 m; it must",
         ),
-        (ridges(0, 10 * UM), "count is 0; it must be a whole number from 1 to 99"),
-        (ridges(3, 10 * UM, amplitude=MM), "amplitude is 0.001 m; it must be below the height, 0.0006 m"),
-        (quarter_tube(MM, MM, 4), "inner is 0.001 m; it must be below the outer radius, 0.001 m"),
+        (ridge(10 * UM, amplitude=MM), "amplitude is 0.001 m; it must be below the height, 0.0006 m"),
     ],
 )
 def test_body_that_cannot_be_made_is_refused(build, words):

@@ -34,19 +34,6 @@ def _slid(ranks: int) -> Body:
 
 
 @pytest.mark.mpi
-def test_ridges_share_the_load_by_their_places():
-    """Three ridges bear the force together; the outer two bear alike, and less than the middle one.
-
-    Tolerance of the outer two: their meshes are not each other's image.
-    """
-    body = Body(geometry.ridges(3, size=30e-6), SKIN, contact=SPRINGS).press(3 * FORCE)
-    assert body.state.ridges.number.tolist() == [-1, 0, 1]
-    left, middle, right = body.state.ridges.f_contact
-    assert left + middle + right == pytest.approx(3 * FORCE, rel=1e-8)
-    assert left == pytest.approx(right, rel=1e-3) and left < 0.99 * middle
-
-
-@pytest.mark.mpi
 def test_fields_are_those_of_the_last_state():
     """The same on every rank: displacement as the body has it, and stress that is as deep as the contact pressure."""
     body = slid()

@@ -179,7 +179,7 @@ def sine(**keys) -> dict:
 
 
 def table(*voltages: float) -> dict:
-    return {"waveform": "file", "times": [0.0, *([0.02] if len(voltages) > 2 else []), 0.1], "voltages": list(voltages)}
+    return {"waveform": "file", "times": [0.0, *([0.02] if len(voltages) > 2 else []), 0.1], "values": list(voltages)}
 
 
 # -- what it is of -----------------------------------------------------------------------------------------

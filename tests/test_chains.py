@@ -1,4 +1,4 @@
-"""Sweeps of full slip from point to point: order, chains, both sides of two states, paths in between, and tables."""
+"""Sweeps of full slip from point to point: order, chains, paths in between, and tables."""
 
 import json
 from dataclasses import replace
@@ -19,7 +19,6 @@ from fingerpad.runs import full_slip
 from fingerpad.runs.batch import chains
 from fingerpad.runs.full_slip import Chain, Fine
 from fingerpad.runs.sweep import _neighbours
-from fingerpad.runs.sweep_columns import OTHER
 from fingerpad.scene import SceneError, from_data
 from geometry.parameters import MeshSize
 from tests.small_finger import NINE
@@ -106,17 +105,13 @@ def followed(monkeypatch, skin, voltages):
     return made.results, written
 
 
-def test_two_states_are_found_from_both_sides(monkeypatch):
-    """Down from 100 V five ridges touch at 70 V, up from 50 V three; at 100 V both ways lead to the same state."""
-    results, written = followed(monkeypatch, Skin(), [100.0, 70.0, 65.0, 50.0])
-    assert [r.full_slip.ridges_in_contact for r in results] == [5, 5, 5, 3]
-    assert written == [0, 1, 2, 3, 2, 1]
-    assert [r.record.get(OTHER, {}).get("ridges_in_contact") for r in results] == [None, 3, 3, None]
-    assert results[2].record[OTHER]["reached"] == "full slip from voltage 50 V"
-    caution = "there are two states of full slip: f_T 1.25 N/m with 5 ridges (full slip from voltage 70 V) and f_T 0.75"
-    assert str(results[2].cautions[-1]).startswith(caution)
-    assert not any("two states" in text.text for r in (results[0], results[3]) for text in r.cautions)
-    assert results[1].record["reached"] == "full slip from voltage 100 V"
+def test_chain_reports_the_state_on_its_side(monkeypatch):
+    """Down from 100 V five ridges touch at 70 V, where up from 50 V three do."""
+    down, _ = followed(monkeypatch, Skin(), [100.0, 70.0, 65.0, 50.0])
+    up, _ = followed(monkeypatch, Skin(), [50.0, 65.0, 70.0, 100.0])
+    assert [r.full_slip.ridges_in_contact for r in down] == [5, 5, 5, 3]
+    assert [r.full_slip.ridges_in_contact for r in up] == [3, 3, 3, 5]
+    assert down[1].record["reached"] == "full slip from voltage 100 V"
 
 
 def test_point_not_found_from_its_neighbour_has_a_path(monkeypatch):

@@ -5,7 +5,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 import fingerpad as fp
-from benchmarks.measured import drives
+from benchmarks.measured import drives, findings
+from benchmarks.measured.fingers import Finger
 from variational.attraction.circuit import GapCircuit, Network, fit_leak
 from variational.attraction.dielectric import DRY, MOIST, VACUUM_PERMITTIVITY, TabledTissue, insulator_thickness
 
@@ -197,9 +198,10 @@ def test_share_is_refused(frequency, gap, words):
 
 def test_impedance_of_a_sliding_finger():
     """Of equal plates it goes with 1 over their length. At 10 Hz it hardly changes with a gap that the leak shorts."""
-    gap, length = np.full((2, 3), 1.6e-6), np.full((2, 3), 2e-3)
-    numbers, verdict = drives.sliding((gap, length), (gap, length / 2))
-    assert_allclose((numbers["low"], numbers["high"]), 1.0)
-    assert verdict == "hit" and numbers["leak"] == pytest.approx(308, abs=1)
-    numbers, verdict = drives.sliding((gap, length), (1.1 * gap, length))
-    assert abs(numbers["low"]) < 0.01 and 0.05 < numbers["high"] < 0.1 and verdict == "miss"
+    row, finger = findings.read()[0]["gap_sliding"], Finger(fp.Scene(), {})
+    gap, length = np.full(3, 1.6e-6), np.full(3, 2e-3)
+    numbers, verdict = drives.sliding(row, finger, (gap, length), finger, (gap, length / 2))
+    assert_allclose((numbers["low"], numbers["high"]), 2.0)
+    assert verdict == "hit"
+    numbers, verdict = drives.sliding(row, finger, (gap, length), finger, (1.1 * gap, length))
+    assert abs(numbers["low"] - 1) < 0.01 and 1.05 < numbers["high"] < 1.1 and verdict == "miss"

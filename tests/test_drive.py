@@ -95,7 +95,7 @@ def test_scene_of_a_drive_survives_its_files():
     [
         SINE | {"waveform": "square"},
         SINE | {"waveform": "square", "burst": {"on": 2, "off": 2}},
-        {"waveform": "file", "times": [0.0, 1.0], "voltages": [-200.0, 200.0]},
+        {"waveform": "file", "times": [0.0, 1.0], "values": [-200.0, 200.0]},
     ],
     ids=["square", "burst", "sawtooth"],
 )
@@ -110,7 +110,7 @@ def test_no_sample_lies_inside_a_jump(drive):
 
 
 # -- refusals --------------------------------------------------------------------------------------------------------
-FILE = {"waveform": "file", "times": [0.0, 0.01, 0.02], "voltages": [0.0, 100.0, 0.0]}
+FILE = {"waveform": "file", "times": [0.0, 0.01, 0.02], "values": [0.0, 100.0, 0.0]}
 TABLE = {"frequency": [10.0, 1e3], "eps": [2e3, 1e3], "sigma": [1e-4, 1e-3]}
 
 
@@ -163,7 +163,7 @@ def scene(drive, duration: float = 0.2, **electric) -> fp.Scene:
 def over(found: fp.Scene):
     """Return times and voltages of the load as the full model follows it."""
     wave = drive_loads.loads(found)[1].wave
-    return np.array(wave.times), np.array(wave.voltages)
+    return np.array(wave.times), np.array(wave.values)
 
 
 def test_ends_in_the_steady_state():
@@ -207,7 +207,7 @@ def _after(t, v, begin: float):
 
 def test_mean_of_a_file_is_constant():
     """A triangle's root mean square, however often it repeats itself: its points are no steps."""
-    file = {"waveform": "file", "times": [0.0, 1e-5, 3e-5, 4e-5], "voltages": [0.0, 100.0, -100.0, 0.0]}
+    file = {"waveform": "file", "times": [0.0, 1e-5, 3e-5, 4e-5], "values": [0.0, 100.0, -100.0, 0.0]}
     t, v = over(scene(file | {"repeat": True}, follows="mean"))
     assert list(t) == [0.0, 0.2]
     assert_allclose(v, 100 / 3**0.5, rtol=1e-5)

@@ -36,6 +36,19 @@ PRESS = {"name": "press", "f_ext": 1.0}
 SLIDE = {"name": "slide", "bone_x": 256e-6}
 WAVE = {"waveform": "sine", "amplitude": 80.0, "frequency": 60.0, "offset": 20.0}
 BY = {"name": "wave", "bone_x_by": 128e-6, "duration": 1 / 60}
+FORCE = {"waveform": "sine", "amplitude": 0.25, "frequency": 60.0, "offset": 1.0}
+HEIGHT = {"waveform": "triangle", "amplitude": 30e-6, "frequency": 60.0, "offset": -20e-6}
+PLACE = {"waveform": "sine", "amplitude": 100e-6, "frequency": 60.0}
+WAVES = {
+    "voltage": ([PRESS, SLIDE], BY | {"voltage": WAVE}),
+    "f_ext": ([PRESS, SLIDE], BY | {"f_ext": FORCE}),
+    "bone_height": (
+        [{"name": "lower", "bone_height": -20e-6}, {"name": "charge", "voltage": 60.0}],
+        {"name": "wave", "bone_height": HEIGHT, "duration": 1 / 60},
+    ),
+    "bone_x": ([PRESS], {"name": "wave", "bone_x": PLACE, "duration": 1 / 60}),
+}
+"""By the control over time: the loads before it, and its load."""
 
 
 def scene(*loads: dict, **more) -> Scene:
@@ -67,29 +80,49 @@ def same(a: list[ContactState], b: list[ContactState], but: tuple[str, ...] = ()
 
 
 # -- what it is ----------------------------------------------------------------------------------------
-def test_waveform_is_the_loads_by_hand():
+@pytest.mark.parametrize("key", WAVES)
+def test_waveform_is_the_loads_by_hand(key):
     """One load at each sample, as the paper's Fig. 9B was done before: full slip does not depend on the steps.
 
-    The air gaps are found to 1e-8: at 97 V a contact length changes 150 times as much as the friction, in parts.
+    The height leaves the screen and comes back: ridges jump at the same heights. The place goes there and back, and
+    friction remembers the same way. The air gaps are found to 1e-8: at 97 V a contact length changes 150 times as much
+    as the friction, in parts.
     """
     exact = {"numerics": {"coupling_tolerance": 1e-8, "step_scale": SCALE}}
-    found = follow(PRESS, SLIDE, BY | {"voltage": WAVE}, **exact)
-    wave = [state for state in found if state.load == "wave"]
-    samples = Load(**BY, voltage=WAVE).wave.samples(1 / 60, SCALE)
-    assert len(wave) == pytest.approx(len(samples), abs=2)  # the first is a jump of 20 V
-    hand = [
-        {"name": f"sample {k}", "voltage": abs(round(u, 9)), "bone_x": 256e-6 + 128e-6 * t * 60}
-        for k, (t, u) in enumerate(samples)
-    ]
-    ends = {state.load: state for state in follow(PRESS, SLIDE, *hand, **exact)}
-    for k, (time, voltage) in enumerate(samples):
-        mine = next(state for state in reversed(wave) if state.time == pytest.approx(time, abs=1e-12))
-        assert mine.voltage == pytest.approx(voltage, abs=1e-9)
-        assert mine.bone_x == pytest.approx(256e-6 + 128e-6 * time * 60, rel=1e-12)
-        assert mine.f_t == pytest.approx(ends[f"sample {k}"].f_t, rel=1e-6)
-        if k > 0:  # the bone stands during the jump
-            assert mine.all_slip and mine.f_t == pytest.approx(MU_0 * (1.0 + mine.f_electrostatic), rel=1e-6)
-        assert mine.contact_length == pytest.approx(ends[f"sample {k}"].contact_length, rel=1e-5)
+    before, wave = WAVES[key]
+    states = [state for state in follow(*before, wave, **exact) if state.load == "wave"]
+    samples, slides = Load(**wave).wave.samples(1 / 60, SCALE), "bone_x_by" in wave
+    assert len(states) == pytest.approx(len(samples), abs=2)  # the first is a jump of 20 V
+    places = [{"bone_x": 256e-6 + 128e-6 * t * 60} if slides else {} for t, _ in samples]
+    hand = [{"name": f"{k}", key: round(x, 12), **places[k]} for k, (_, x) in enumerate(samples)]
+    ends = {state.load: state for state in follow(*before, *hand, **exact)}
+    for k, (time, value) in enumerate(samples):
+        mine, other = next(s for s in reversed(states) if s.time == pytest.approx(time, abs=1e-12)), ends[f"{k}"]
+        assert getattr(mine, key) == pytest.approx(value, rel=1e-9, abs=1e-9 if key == "voltage" else 1e-15)
+        if slides:
+            assert mine.bone_x == pytest.approx(places[k]["bone_x"], rel=1e-12)
+            if k > 0:  # the bone stands during a jump
+                friction = MU_0 * (mine.f_ext + mine.f_electrostatic)
+                assert mine.all_slip and mine.f_t == pytest.approx(friction, rel=1e-6)
+        assert (mine.f_t, mine.f_ext) == pytest.approx((other.f_t, other.f_ext), rel=1e-6, abs=1e-9)
+        lengths = mine.contact_length, mine.bone_height
+        assert lengths == pytest.approx((other.contact_length, other.bone_height), rel=1e-5, abs=1e-12)
+
+
+@pytest.mark.mpi
+def test_force_over_time_without_friction_has_no_history():
+    """From the air on: up, down and through the same force again, at the same height. Tolerance: Newton's."""
+    states = follow({"name": "wave", "f_ext": FORCE, "duration": 1 / 60}, friction=0.0)
+    passes = [state.bone_height for state in states if state.f_ext == pytest.approx(1.0) and state.load == "wave"]
+    assert len(passes) == 3 and passes == pytest.approx([passes[0]] * 3, rel=1e-8)
+
+
+def test_finger_is_lifted_by_a_ramp():
+    """By a table of heights, from a force on: the force falls until nothing touches."""
+    ramp = {"waveform": "file", "times": [0.0, 1.0], "values": [-20e-6, 20e-6]}
+    lift = [state for state in follow(PRESS, {"name": "lift", "bone_height": ramp}) if state.load == "lift"]
+    assert lift[0].f_ext > 0 and lift[-1].f_ext == pytest.approx(0.0, abs=1e-9) and lift[-1].ridges_in_contact == 0
+    assert all(a.f_ext >= b.f_ext - 1e-9 for a, b in zip(lift, lift[1:], strict=False))
 
 
 def test_sign_of_the_voltage_changes_nothing():
@@ -100,8 +133,8 @@ def test_sign_of_the_voltage_changes_nothing():
             [{"name": "a", "voltage": 50.0}, {"name": "b", "voltage": -90.0}],
         ),
         (
-            [{"name": "table", "voltage": {"waveform": "file", "times": [0, 1, 2], "voltages": [0, 90, 30]}}],
-            [{"name": "table", "voltage": {"waveform": "file", "times": [0, 1, 2], "voltages": [0, -90, -30]}}],
+            [{"name": "table", "voltage": {"waveform": "file", "times": [0, 1, 2], "values": [0, 90, 30]}}],
+            [{"name": "table", "voltage": {"waveform": "file", "times": [0, 1, 2], "values": [0, -90, -30]}}],
         ),
     ):
         plus, minus = follow(PRESS, *up, SLIDE), follow(PRESS, *down, SLIDE)
@@ -119,7 +152,7 @@ def test_relative_moves_are_moves():
 
 
 @pytest.mark.parametrize(
-    "wave", [WAVE, {"waveform": "file", "times": [0, 1 / 60], "voltages": [0, 100]}], ids=["sine", "file"]
+    "wave", [WAVE, {"waveform": "file", "times": [0, 1 / 60], "values": [0, 100]}], ids=["sine", "file"]
 )
 def test_every_state_is_at_the_voltage_of_its_time(wave):
     """Also where the bone moves so far between two samples that steps are cut. Tolerance: roundoff of the square."""
@@ -225,6 +258,18 @@ def test_results_of_a_run(tmp_path):
     assert f"</sub> from {mu.min:.4f} to {mu.max:.4f} <" in shown and "In the load wave the friction force" in shown
     assert "in the load wave, over time" in shown
     assert "Loads over time" in shown and "sine of 80 V about 20 V at 60 Hz" in shown and escape(NOTE) in shown
+
+
+def test_friction_over_time_is_that_of_the_force():
+    """By Coulomb's law at each instant: its amplitude is that of the force times µ_0, by cubics between samples."""
+    found = result(PRESS, SLIDE, BY | {"f_ext": FORCE})
+    load = found.loads[-1]
+    assert not found.failure and load.full_slip_part == 1 and load.over_time.frequency[0] == pytest.approx(60.0)
+    assert load.over_time.f_t_amplitude[0] == pytest.approx(0.25 * MU_0, rel=2e-3)
+    assert load.over_time.mean["f_t"] == pytest.approx(MU_0, rel=2e-3)
+    assert load.extremes["f_t"].max == pytest.approx(1.25 * MU_0, rel=1e-6)
+    assert (load.extremes["f_ext"].min, load.over_time.mean["f_ext"]) == pytest.approx((0.75, 1.0), rel=1e-3)
+    assert "In the load wave the friction force" in str(found)
 
 
 def test_first_touch_has_no_estimated_errors():

@@ -63,7 +63,7 @@ def test_spectrum_of_a_file_has_its_carrier():
     time = np.arange(161) / 160 * PERIOD
     turn = 2 * np.pi * time / PERIOD
     voltage = 100 * np.sin(4 * turn) * (1 - np.cos(turn)) / 2
-    keys = {"waveform": "file", "times": time.tolist(), "voltages": [round(u, 9) for u in voltage.tolist()]}
+    keys = {"waveform": "file", "times": time.tolist(), "values": [round(u, 9) for u in voltage.tolist()]}
     loads = [{"name": "press", "f_ext": 1.0}, {"name": "wave", "duration": PERIOD, "voltage": keys}]
     file = from_data({"history": loads}).history[1].wave
     found = over_time(states(list(zip(time, voltage, strict=True)), lambda u: (u / 100) ** 2), file)

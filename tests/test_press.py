@@ -10,6 +10,7 @@ from fingerpad.reduced.closed_form import closed_form
 from fingerpad.reduced.cylinders import over_forces
 from fingerpad.reduced.press import Press
 from fingerpad.runs import press as making
+from fingerpad.scene.fingers import FINGERS
 from tests.small_finger import NINE
 from variational.attraction.tip import Power, Round, kernel
 
@@ -93,7 +94,17 @@ def test_forces_of_flat_tips_balance():
     assert still.contact_length == pytest.approx(OWN.length(50.0, "charged"), rel=1e-9)
     (found,) = over_forces(scene.replace(voltage=150.0), [50.0], "full_slip", OWN)
     assert found.f_contact == pytest.approx(50.0 + found.f_electrostatic, rel=1e-9)
-    assert found.contact_length > OWN.length(50.0, "full_slip")
+    assert found.contact_length > (1 - found.f_t**2 / (50.0 * press.ROLL)) * OWN.length(50.0, "charged")
+
+
+def test_friction_rolls_ridges_off():
+    """The contact that is left is the press's without f_T^2 / (f F) of it, beside roundoff of the ridges' number."""
+    friction = {"law": "Derjaguin", "mu_f": 0.0, "tau_0": 10e3}
+    scene = fp.Scene(geometry=FLAT, voltage=0.0, friction=friction)
+    (found,) = over_forces(scene, [50.0], "full_slip", OWN)
+    left = 1 - found.f_t**2 / (50.0 * press.ROLL)
+    stiffer = 0.95  # of ridges by their shear, at least
+    assert stiffer * left < found.contact_length / OWN.length(50.0, "charged") < left < 0.95
 
 
 def test_closed_form_has_the_numbers_of_the_model():
@@ -106,6 +117,11 @@ def test_closed_form_has_the_numbers_of_the_model():
     for name, value in {"mu_app": "mu_app", "contact": "contact_area", "indentation": "indentation"}.items():
         assert getattr(found, name) == pytest.approx(known[value], rel=1e-3), name
     assert found.share == pytest.approx(found.contact / found.gross)
+
+
+@pytest.mark.parametrize("name", FINGERS)
+def test_package_has_the_press_of_each_finger(name):
+    assert press.name(fp.Scene(finger=name)) in press.shipped()
 
 
 @pytest.mark.slow

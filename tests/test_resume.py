@@ -45,6 +45,7 @@ HISTORIES = {
     "drive": (None, {"f_ext": 2.0, "voltage": DRIVE, "electric": LOSSY}),
     "drive over time": ([PRESS, WAVE], {"electric": LOSSY}),
     "viscous waveform": ([PRESS, WAVE], {"materials": VISCOUS}),
+    "force over time": ([PRESS, WAVE | {"voltage": None, "f_ext": DRIVE | {"amplitude": 0.5, "offset": 2.0}}], {}),
     "mixed": ([PRESS, CHARGE, SLIDE], {"numerics": {"element": "P2-P1"}}),
 }
 

@@ -1,4 +1,4 @@
-"""Height maps: trends, distribution, spectrum, fit, synthesis, files, and the roughness that a small map misses."""
+"""Height maps: trends, spectrum, fit, synthesis, files, and the roughness that a small map misses."""
 
 import importlib
 
@@ -7,7 +7,7 @@ import pytest
 
 from variational.roughness.bam import BearingArea
 from variational.roughness.spectrum import SelfAffine, power_spectrum, roughness_table
-from variational.roughness.topography import HeightMap, distribution, polynomials
+from variational.roughness.topography import HeightMap, polynomials
 
 UM = 1e-6
 SHAPE, SIZE = (256, 256), (800 * UM, 800 * UM)
@@ -37,14 +37,6 @@ def test_a_trend_is_removed_exactly(trend):
         h = h + 300 * x**2 - 200 * x * y + 100 * y**2
     flat = HeightMap(h, (100 * UM, 70 * UM)).detrended(trend)
     assert np.abs(flat.heights).max() < 1e-12 * np.ptp(h)
-
-
-def test_distribution_of_gaussian_heights():
-    """N = 1e5 independent heights: skewness and kurtosis scatter by sqrt(6/N) and sqrt(24/N)."""
-    n = 100_000
-    found = distribution(HeightMap(2.0 + np.random.default_rng(0).normal(size=(400, 250)), (1.0, 1.0)))
-    assert abs(found.skewness) < 3 * np.sqrt(6 / n)
-    assert abs(found.kurtosis - 3) < 3 * np.sqrt(24 / n)
 
 
 def test_parseval(rough):
@@ -144,8 +136,6 @@ def test_bad_maps(heights, size, words):
 
 def test_nothing_to_analyse():
     flat = HeightMap(np.zeros((32, 32)), (1.0, 1.0))
-    with pytest.raises(ValueError, match="no roughness"):
-        distribution(flat)
     with pytest.raises(ValueError, match="no roughness"):
         power_spectrum(flat).fit()
     with pytest.raises(ValueError, match="factor of 3"):

@@ -1,14 +1,20 @@
-"""Voltages over time in scenes: their samples, files, units and refusals."""
+"""Controls over time in scenes: their samples, files, units and refusals."""
 
 import math
+import pickle
 
 import pytest
 
-from fingerpad.scene import SceneError, from_data, load, override
+from fingerpad.scene import Scene, SceneError, from_data, load, override
+from fingerpad.scene.keys import by_name
+from fingerpad.scene.loads import keys_of_load
 from fingerpad.scene.waveform import MOST, SAMPLES, Waveform
 
 SINE = {"waveform": "sine", "amplitude": 200.0, "frequency": 60.0}
 PRESS = {"name": "press", "f_ext": 1.0}
+FORCE = SINE | {"offset": 1.0, "amplitude": 1.0}
+LIFT = SINE | {"amplitude": 1e-3}
+LONG = {"duration": 1.0}
 TABLE = "time (s),voltage (V)\n"
 
 
@@ -56,12 +62,12 @@ def test_square_jumps_both_ways():
 
 def test_flat_parts_of_a_file_have_samples_behind_a_jump():
     """As many as half a square's period, also where the load begins; where nothing jumped a piece is one step."""
-    burst = {"waveform": "file", "times": (0, 0.01, 0.010001, 0.02, 0.03), "voltages": (0, 0, 100, 100, 100)}
+    burst = {"waveform": "file", "times": (0, 0.01, 0.010001, 0.02, 0.03), "values": (0, 0, 100, 100, 100)}
     times = [time for time, _ in wave(0.03, **burst).samples(0.03, 1.0)]
     counts = [sum(a < time <= b for time in times) for a, b in ((0, 0.01), (0.010001, 0.02), (0.02, 0.03))]
     assert counts == [SAMPLES // 2, SAMPLES // 2, 1]
     dense = [k / SAMPLES for k in range(SAMPLES + 1)]  # of a sine: no jump in it
-    sine = {"waveform": "file", "times": dense, "voltages": [100 * math.sin(2 * math.pi * t) for t in dense]}
+    sine = {"waveform": "file", "times": dense, "values": [100 * math.sin(2 * math.pi * t) for t in dense]}
     assert len(wave(**sine).samples(1.0, 1.0)) <= SAMPLES + 1 + SAMPLES // 2
 
 
@@ -74,7 +80,7 @@ def test_file_is_straight_between_its_points(write, tmp_path):
     )
     scene = load(path)
     found = scene.history[1].wave
-    assert (found.times, found.voltages) == ((0, 0.01, 0.02, 0.04), (0, 100, -100, -100))
+    assert (found.times, found.values) == ((0, 0.01, 0.02, 0.04), (0, 100, -100, -100))
     assert from_data(scene.parameters()) == scene and "mine" not in str(scene.parameters())
     samples = found.samples(0.04, 1.0)
     assert {(0.0, 0.0), (0.01, 100.0), (0.015, 0.0), (0.02, -100.0), (0.04, -100.0)} <= set(samples)
@@ -94,6 +100,20 @@ def test_units_and_changes(write):
     assert str(scene.history[1].wave) == "sine of 200 V about -50 V at 50 Hz"
     assert (scene.history[1].bone_x_by, scene.history[1].speed) == (1e-3, 0.02)
     assert load(path, {"history[1].voltage": "-80 V"}).history[1].level == -80.0
+
+
+@pytest.mark.parametrize("name", [name for name, key in keys_of_load().items() if key.wave is not None])
+def test_every_control_is_a_waveform_of_its_own_unit(name):
+    """With the ranges and the unit of its key in the reference; pickled and printed as any scene."""
+    limits = keys_of_load()[name].limits
+    of = {"amplitude": f"{limits.high / 200} {limits.unit}", "offset": limits.high / 100, "waveform": "square"}
+    scene = from_data({"history": [PRESS, {"name": "wave", "duration": 1.0, name: SINE | of}]})
+    assert scene.history[1].wave.peak == pytest.approx(0.015 * limits.high)
+    assert pickle.loads(pickle.dumps(scene)) == scene == from_data(scene.parameters())
+    key = by_name(Scene)[f"history[].{name}.amplitude"]
+    assert (key.unit, key.limits.high) == (limits.unit, limits.high)
+    words = "0.5 mm about 1 mm" if limits.unit == "m" else f"25 {limits.unit} about 50 {limits.unit}"
+    assert f": square of {words} at 60 Hz" in next(scene.history[1].aims())
 
 
 # -- refusals ------------------------------------------------------------------------------------------
@@ -126,9 +146,23 @@ def refusal(*loads: dict) -> str:
             "history[1].voltage.frequency is missing; history[1].voltage.waveform is 'sine' and needs it",
         ),
         (
-            {"voltage": {"waveform": "file", "times": [0, 1], "voltages": [0, 9]}, "duration": 2.0},
+            {"voltage": {"waveform": "file", "times": [0, 1], "values": [0, 9]}, "duration": 2.0},
             "history[1].voltage has values up to 1 s and the load takes 2 s",
         ),
+        (
+            {"f_ext": FORCE | {"amplitude": 1.5}} | LONG,
+            "history[1].f_ext.offset is 1 and history[1].f_ext.amplitude is",
+        ),
+        ({"f_ext": FORCE} | LONG, "history[1].f_ext goes through 0 while voltage is 0, where nothing holds the skin"),
+        ({"f_ext": FORCE | {"offset": "1 V"}}, "history[1].f_ext.offset is '1 V'; its unit is not a unit of force per"),
+        ({"f_ext": FORCE | {"carrier": {"frequency": 9.0}}}, "history[1].f_ext.carrier is not a key of history[1].f_"),
+        ({"f_ext": {"waveform": "file", "times": [0, 1], "values": [1, -1]}}, "history[1].f_ext.values[1] is -1 N/m;"),
+        ({"f_ext": FORCE, "voltage": SINE} | LONG, "history[1].voltage is a waveform and history[1].f_ext is a wave"),
+        ({"f_ext": FORCE, "bone_height": LIFT}, "history[1].f_ext is a waveform and history[1].bone_height is a wave"),
+        ({"bone_height": LIFT | {"offset": 0.1}} | LONG, "history[1].bone_height.offset is 0.1 and history[1].bone_h"),
+        ({"bone_height": LIFT}, "history[1].bone_height is a sine and the load takes no time; give a history[1].speed"),
+        ({"bone_x": LIFT, "speed": 0.1}, "history[1].speed is 0.1 and the bone does not move by a number; give a his"),
+        ({"bone_x": LIFT, "until_full_slip": True} | LONG, "history[1].bone_x is a waveform and history[1].until_ful"),
     ],
     ids=lambda value: "" if isinstance(value, dict) else value[:40],
 )
@@ -142,7 +176,7 @@ def test_contradictions_are_refused(load_, message):
 def test_steps_of_a_table_are_counted(points, allowed):
     """From 100 to -100 V and back at each point takes eight steps: four to zero, and four on; the first piece 12."""
     times, voltages = [1e-3 * k for k in range(points)], [100.0 * (-1) ** k for k in range(points)]
-    table = {"waveform": "file", "times": times, "voltages": voltages}
+    table = {"waveform": "file", "times": times, "values": voltages}
     load_ = {"name": "wave", "duration": times[-1], "voltage": table}
     if allowed:
         wave = from_data({"history": [PRESS, load_]}).history[1].wave

@@ -13,7 +13,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 
-class Lazy:
+class _Lazy:
     """A module by its name, imported when something of it is first used.
 
     A law is a value: its numbers, their units and their ranges. Scenes, folders and reports hold laws where UFL may be
@@ -28,8 +28,8 @@ class Lazy:
         return getattr(import_module(self._name), attribute)
 
 
-ufl: Any = Lazy("ufl")
-kinematics: Any = Lazy("variational.kinematics")
+ufl: Any = _Lazy("ufl")
+kinematics: Any = _Lazy("variational.kinematics")
 
 OF_SCENE = {"of scene": True}
 """Metadata of a field that a scene gives by itself, such as the thickness of its insulators; no key of the law."""
@@ -38,7 +38,7 @@ OF_SCENE = {"of scene": True}
 def parameter(
     low: float, high: float, unit: str = "", *, zero: bool = False, sides: int = 1, default: Any = MISSING
 ) -> Any:
-    """Return the field of a law's number, with what scenes, their schema and their reference read of it.
+    """Return the field of a law's number, with what scenes and their reference read of it.
 
     Args:
         low: smallest value that a scene may give, of the amount where ``sides`` is 2.

@@ -1,187 +1,209 @@
-"""Measured fingers beside this model's numbers, row by row.
+"""Findings on human fingers beside this model's numbers, row by row.
 
-environment/run python3 -m benchmarks.measured [--jobs 2] [--draw]
+environment/run python3 -m benchmarks.measured [ROW … | FINGER …] [--jobs 2] [--draw]     also: make measured ROW=softer
+environment/run python3 -m benchmarks.measured --felt       the numbers of what is felt, ten minutes
 
-Most numbers are those of docs/paper.json, docs/models.json and docs/viscosity.json (make paper, benchmarks.models, make
-viscosity), to be made again after them. Ten presses are run here, some ten seconds each, and one that is held for 20 s.
-Writes docs/measured.json, and from it docs/measured.md and its picture. A finding of the kind ``simulated`` was
-computed by its source and does not count.
+Rows are those of data/findings.toml. Each is computed with the finger that it names, from runs that rows share and that
+are kept in results/traces, so that an interrupted command goes on. With names of rows or fingers it prints these
+and keeps nothing. Otherwise it writes docs/measured.json, and from it docs/measured.md and its picture. Numbers of what
+is felt are those of docs/felt.json, and those of viscous skin of docs/viscosity.json (make viscosity).
 """
 
 import argparse
-import csv
 import sys
-from collections.abc import Mapping
+import tomllib
+from collections import Counter
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from benchmarks.harness import cells, keep, kept, made, main, page, picture, run
-from benchmarks.measured import drives, fingers, keys, rows, rules
-from benchmarks.measured.rules import BUILT, HIT
-from benchmarks.runs import VOLTAGES, Run
+from benchmarks import harness
+from benchmarks.harness import cells
+from benchmarks.measured import drives, felt, findings, fingers, rows, rules
+from benchmarks.measured.findings import Finding
+from benchmarks.measured.fingers import Case
+from benchmarks.runs import Unfinished
 from fingerpad.results.pictures import style
 from fingerpad.scene import Scene
 
-_LEFT_OUT = (
-    "time", "relaxation", "speed", "real_sliding", "adhesion", "gap_sliding",
-    "friction_acrylic", "friction_power", "friction_occluded",
-)  # fmt: skip
-"""Rows of what the default finger leaves out."""
-_LIMIT = 600.0  # s of processor time for one run
+_LIMIT = 1500.0  # s of processor time for one run
+_OF_DRY = ("stuck_wet", "friction_humid", "friction_moist_palm", "friction_time")
+_BESIDE = {"gap_sliding": "held", **dict.fromkeys(_OF_DRY, "fitted")}
+"""Fingers whose runs a row needs too."""
+STATES = {
+    "fitted": "dry",
+    "moist": "sweating or wetted",
+    "held": "some 10 s and more on glass",
+    "paper": "the default finger: the finding names no state, or its runs would be too long for another",
+}
+"""Of the fingers that findings name."""
+_KEPT = {"felt": felt.ROWS, "viscosity": rows.TIMED}
+"""Rows of the numbers that other commands keep."""
+_COMPUTED: dict[str, Any] = {**rows.ROWS, **felt.ROWS, **rows.TIMED}
 
 
-def pressed(scene: Scene, out: Path) -> dict[str, Any]:
-    """Return what the page has of a pressed finger: its contact length (m), touching ridges and their pressures (Pa).
-
-    Places (m) and pressures are of each touching ridge; a pressure is the contact force over the ridge's wavelength.
-    """
-    found, wavelength = Run(scene, out), scene.geometry.ridge_wavelength
-    touching = found.final("uncharged", "ridges")
-    ridges, force = touching["ridge"], touching["f_contact"]
-    length = float(found.summary["uncharged_contact_length"])
-    along = {"place": (ridges * wavelength).tolist(), "pressure": (force / wavelength).tolist()}
-    return {"length": length, "ridges": len(ridges)} | along
+# -- runs ------------------------------------------------------------------------------------------------------
+def chosen(names: Collection[str], every: Mapping[str, Finding]) -> list[Finding]:
+    """Return the computable findings of the names of rows and fingers, all without one."""
+    found = [row for row in every.values() if row.id in _COMPUTED]
+    return [row for row in found if not names or {row.id, row.finger} & set(names)]
 
 
-def numbers(runs: dict[str, Any], held: Mapping[str, list[float]], docs: Path) -> dict[str, Any]:
-    """Return the numbers of the page from runs of :func:`pressed`, a held finger and the kept ones of other pages."""
-    grid = rows.grid(kept("paper", docs).numbers, kept("models", docs).numbers)
-    # Where no scene has a key for a finding, the verdict is in the table of texts.
-    typed: dict[str, rows.Row] = {text["key"]: ({}, text["verdict"]) for text in _read("rows") if text["verdict"]}
-    of_time = keys.of_time(kept("viscosity", docs).numbers, held)
-    every = {"rows": rows.numbers(grid, runs) | drives.numbers() | of_time | typed, "others": keys.others(runs)}
-    judged = {
-        name: {
-            key: {"numbers": {each: float(value) for each, value in found.items()}, "verdict": verdict}
-            for key, (found, verdict) in table.items()
-        }
-        for name, table in every.items()
-    }
-    return {"runs": runs, "held": held, "curves": rows.curves(grid)} | judged
+def scenes(wanted: Sequence[Finding]) -> dict[str, Scene]:
+    """Return the scenes that findings need, by finger and kind."""
+    needed = {row.finger for row in wanted if row.id in rows.ROWS and row.id not in drives.WITHOUT_RUNS}
+    names = [name for name in fingers.NAMES if name in needed | {_BESIDE.get(row.id) for row in wanted}]
+    return {f"{name}: {kind}": scene for name in names for kind, scene in fingers.scenes(name).items()}
+
+
+def judged(wanted: Sequence[Finding], out: Path, docs: Path) -> Iterator[tuple[str, dict[str, float], str]]:
+    """Yield for each finding its name, numbers and verdict; without its runs it is not computed."""
+    every = fingers.fingers(fingers.NAMES, out)
+    beside = {each: harness.kept(name, docs).numbers for name, part in _KEPT.items() for each in part}
+    for row in wanted:
+        try:
+            if row.id in rows.ROWS:
+                found = rows.ROWS[row.id](Case(row, every[row.finger], every))
+            else:
+                found = _COMPUTED[row.id](beside[row.id])
+        except Unfinished as error:
+            print(f"{row.id}: {error}")
+            found = {}, rules.OPEN
+        yield row.id, {name: float(value) for name, value in found[0].items()}, found[1]
 
 
 def compute(args: argparse.Namespace) -> None:
-    """Run what is missing and keep the numbers."""
-    wanted = fingers.scenes()
-    summaries = run(wanted | {"held": keys.scene()}, args, _LIMIT)
-    runs = {name: pressed(scene, args.out) for name, scene in wanted.items()}
-    keep("measured", numbers(runs, keys.held(args.out), args.docs), made(summaries.values()), args.docs)
+    """Run what is missing; print the rows that are named, or keep all."""
+    every, _ = findings.read()
+    if unknown := set(args.names) - {row.id for row in chosen((), every)} - set(fingers.NAMES):
+        raise SystemExit(f"{min(unknown)} is neither a row that is computed nor one of {', '.join(fingers.NAMES)}")
+    wanted = chosen(args.names, every)
+    summaries = harness.run(scenes(wanted), args, _LIMIT)
+    found = {}
+    for name, numbers, verdict in judged(wanted, args.out, args.docs):
+        found[name] = {"numbers": numbers, "verdict": verdict}
+        print(f"{verdict:>12}  {name}: {_ours(name, numbers)}")
+    if not args.names:
+        missing = [name for name, summary in summaries.items() if "failure" in summary]
+        harness.keep("measured", {"rows": found, "missing": missing}, harness.made(summaries.values()), args.docs)
 
 
 # -- page ------------------------------------------------------------------------------------------------------
 class Row(NamedTuple):
-    """A measured finding with its verdict, and its row on the page."""
+    """A finding with its verdict and its texts."""
 
-    key: str
-    kind: str
-    numbers: Mapping[str, float]
+    finding: Finding
+    ours: str
     verdict: str
-    line: str
+    cause: str
+    source: str
 
 
-def judged(docs: Path) -> list[Row]:
-    """Return the rows of the page from the kept numbers of a folder."""
-    found, judged = kept("measured", docs).numbers["rows"], []
-    sources = {source["key"]: f"[{k}]({source['link']})" for k, source in enumerate(_read("sources"), start=1)}
-    for text in _read("rows"):
-        numbers, verdict = found[text["key"]].values()
-        verdict = BUILT if text["built"] and verdict == HIT else verdict
-        because = f": {text['why']}" if verdict != HIT and text["why"] else ""
-        ours = text["ours"].format(**numbers).replace("%", " %")
-        measured, fitted = f"{text['measured']} {sources[text['source']]}", _number(text["fitted"])
-        line = cells(measured, ours, fitted, f"**{verdict}**{because}")
-        judged.append(Row(text["key"], text["kind"], numbers, verdict, line))
-    return judged
+with (Path(__file__).parent / "words.toml").open("rb") as _file:
+    WORDS: dict[str, dict[str, str]] = tomllib.load(_file)
+"""By finding ``ours``, a template of its numbers, and ``cause``: of what is not a hit, with what would meet it."""
 
 
-def with_keys(docs: Path) -> list[Row]:
-    """Return the findings that are computed with other keys too, in the order of ``others.csv``."""
-    found, first = kept("measured", docs).numbers["others"], {text["key"]: text for text in _read("rows")}
-    made_of = []
-    for text in _read("others"):
-        numbers, verdict = found[text["key"]].values()
-        verdict = BUILT if text["built"] and verdict == HIT else verdict
-        ours = text["ours"].format(**numbers).replace("%", " %")
-        line = cells(first[text["key"]]["measured"], text["keys"], ours, _number(text["fitted"]), f"**{verdict}**")
-        made_of.append(Row(text["key"], "other", numbers, verdict, line))
-    return made_of
+def _ours(name: str, numbers: Mapping[str, float]) -> str:
+    if not numbers and "{" in WORDS[name]["ours"]:
+        return "–"
+    return WORDS[name]["ours"].format(**numbers).replace("%", " %")
 
 
-def _number(fitted: str) -> str:
-    """Return how many parameters are fitted, without which ones."""
-    return fitted.partition(" (")[0]
+def table(docs: Path) -> list[Row]:
+    """Return all rows of the page from the kept numbers of a folder."""
+    every, sources = findings.read()
+    kept, places = harness.kept("measured", docs).numbers["rows"], {name: k for k, name in enumerate(sources, start=1)}
+    found = []
+    for name, row in every.items():
+        numbers, verdict = kept[name].values() if name in kept else ({}, rules.OPEN)
+        link = f"[{places[row.source]}]({sources[row.source].link or '#sources'})"
+        ours = _ours(name, numbers) if name in kept else "–"
+        missed = verdict in (rules.PART, rules.MISS)
+        cause = row.why if row.role == "context" else WORDS[name].get("cause", "") if missed else ""
+        found.append(Row(row, ours, verdict, cause, link))
+    return found
 
 
-def _read(name: str) -> list[dict[str, str]]:
-    with (Path(__file__).parent / f"{name}.csv").open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
+def line(row: Row) -> str:
+    """Return a row of the page's tables."""
+    finding = row.finding
+    role = {"fit": " (fitted)", "context": " (context)"}.get(finding.role, " (by construction)" * finding.built)
+    area = f" [{finding.area}]" if finding.area else ""
+    verdict = f"**{row.verdict}**{role}{f': {row.cause}' if row.cause else ''}"
+    words = f"{finding.quantity}{area}; {finding.condition} {row.source}"
+    return cells(words, finding.measured, f"`{finding.finger}`", row.ours, verdict)
+
+
+def judges(every: Sequence[Row], finger: str = "") -> Counter[str]:
+    """Return how many rows have each verdict, of those that judge and are no hits by construction."""
+    own = [row for row in every if row.finding.role == "judge" and finger in ("", row.finding.finger)]
+    return Counter(row.verdict for row in own if not (row.finding.built and row.verdict == rules.HIT))
+
+
+def side(row: Row) -> str:
+    """Return a row's part of the table of contradictions."""
+    finding = row.finding
+    return cells(f"{finding.quantity}, {finding.measured} {row.source}, `{finding.finger}`", f"**{row.verdict}**")
+
+
+def site_error(errors: Any) -> float:
+    """Return the largest known error of energy densities at Merkel sites on the default path mesh, over their value."""
+    found, limits = errors["again"]["path"]["values"], errors["reference"]
+    return float(max(abs(found[key] / limits[key]["value"] - 1) for key in limits if "_sed_" in key))
 
 
 def draw(docs: Path) -> Path:
     """Write docs/measured.md and its picture from docs/measured.json."""
-    picture(docs / "measured.png", (11, 4), lambda figure: _paint(figure, kept("measured", docs).numbers))
-    every = judged(docs)
-    names: dict[str, Any] = {"judged": every, "others": with_keys(docs), "sources": _read("sources")}
-    names |= {"left_out": sum(row.verdict == rules.MISS for row in every if row.key in _LEFT_OUT)}
-    names |= {"found": [row.verdict for row in every if row.kind != "simulated"]}
-    return page(docs, "measured", "make measured", globals() | names)
+    every, field = table(docs), harness.kept("felt", docs).numbers["subfield"]
+    harness.picture(docs / "measured.png", (10, 4), lambda figure: _paint(figure, field, every))
+    by_name, (rows_, sources) = {row.finding.id: row for row in every}, findings.read()
+    names: dict[str, Any] = {"every": every, "sources": sources, "count": judges(every)}
+    names |= {"pairs": [[by_name[each.id] for each in pair] for pair in findings.pairs(rows_)]}
+    names |= {"site_error": site_error(harness.kept("errors", docs).numbers)}
+    names |= {"fits": [row for row in every if row.finding.role == "fit"], "judging": [*filter(_judges, every)]}
+    return harness.page(docs, "measured", "make measured", globals() | names, "felt", "viscosity")
 
 
-# -- picture -------------------------------------------------------------------------------------------------
-def _paint(figure: Figure, numbers: Mapping[str, Any]) -> None:
-    figure.suptitle("Shapes, not values: this model beside the form of measured curves, scaled to it")
-    voltage, force, pressure = figure.subplots(1, 3)
-    _over_voltage(voltage, numbers["curves"])
-    _over_depth(force, *(np.array(numbers["curves"][name]) for name in ("depth", "force")))
-    _over_width(pressure, numbers["runs"]["dry 20"])
+def _judges(row: Row) -> bool:
+    return row.finding.role == "judge"
 
 
-def _over_voltage(ax: Axes, curves: Mapping[str, list[float]]) -> None:
-    u, words = np.array(VOLTAGES[1:]), dict(zip(rows.DRAWN, ("friction", "contact length"), strict=True))
-    for k, (force, name) in enumerate((f, name) for f in rows.DRAWN_FORCES for name in rows.DRAWN):
-        values = np.array(curves[f"{name} {force:g}"])
-        rise = (values[1:] - values[0]) / (values[VOLTAGES.index(100.0)] - values[0])
-        look = {"color": style.CATEGORIES[k], "marker": style.MARKERS[k], "ms": 5}
-        ax.loglog(u, rise, **look, label=f"{words[name]}, {force:g} N/m")
-    ax.loglog(u, (u / 100) ** 2, color="black", ls="--", zorder=0, label="U², measured shape")
-    ax.set(xlabel="voltage (V)", ylabel="rise over 0 V / rise at 100 V (–)", title="A  full slip")
-    ax.set_xticks(u, [f"{each:g}" for each in u])
-    ax.minorticks_off()
-    ax.legend(fontsize=8)
+def _paint(figure: Figure, field: Mapping[str, Any], every: Sequence[Row]) -> None:
+    """Draw the verdicts by topic, and the stress of one site under a moving line load."""
+    left, right = figure.subplots(1, 2)
+    topics = list(dict.fromkeys(row.finding.topic for row in filter(_judges, every)))
+    found, start = [judges([row for row in every if row.finding.topic == topic]) for topic in topics], [0] * len(topics)
+    looks = {rules.HIT: style.BLUE, rules.PART: style.ORANGE, rules.MISS: style.VERMILION, rules.OPEN: "lightgrey"}
+    for verdict, colour in looks.items():
+        left.barh(topics, [each[verdict] for each in found], left=start, color=colour, label=verdict)
+        start = [before + each[verdict] for before, each in zip(start, found, strict=True)]
+    left.set(xlabel="findings that judge", title="A  verdicts by topic")
+    left.invert_yaxis()
+    left.legend(fontsize=8)
+    right.plot(1e3 * np.array(field["s"]), field["stress"], color=style.BLUE)
+    right.axvspan(-0.2, 0.2, color=style.ORANGE, alpha=0.3, lw=0, label="measured subfield, 0.4 mm")
+    right.set(xlabel="place of the line load along the skin (mm)", title="B  stress at a Merkel site, line load")
+    right.legend(loc="lower center", fontsize=8)
 
 
-def _over_depth(ax: Axes, depth: rows.Array, force: rows.Array) -> None:
-    ax.plot(1e3 * depth, force, "o", color=style.BLUE, label="this model, 0 V")
-    exponent = rules.of_largest(rules.power, depth, force).parameter
-    _fitted(ax, rules.exponential, (depth, force), 1.0, ("--", "black", "exponential, measured shape"))
-    _fitted(ax, rules.power, (depth, force), 1.0, (":", style.VERMILION, f"power law, {exponent:.2f}"))
-    ax.set(xlabel="depth (mm)", ylabel="force of the whole finger (N)", title="B  pressed, 0 V")
-    ax.legend(fontsize=8)
-
-
-def _over_width(ax: Axes, run: Mapping[str, Any]) -> None:
-    points = np.array(run["place"]), np.array(run["pressure"])
-    ax.plot(1e3 * points[0], points[1] / 1e3, "o", color=style.BLUE, label="ridges of this model")
-    _fitted(ax, rules.paraboloid, points, 1e-3, ("--", "black", "paraboloid, measured shape"))
-    _fitted(ax, rules.ellipse, points, 1e-3, (":", style.VERMILION, "half an ellipse"))
-    ax.set(xlabel="x (mm)", ylabel="force over area of a ridge (kPa)", title="C  75 N/m, 0 V")
-    ax.set_ylim(0, 1.55e-3 * points[1].max())
-    ax.legend(fontsize=8, loc="upper center")
-
-
-def _fitted(
-    ax: Axes, form: rules.Form, points: tuple[rows.Array, rows.Array], unit: float, look: tuple[str, str, str]
-) -> None:
-    """Draw a form that is fitted by the largest value; ``look`` is line, colour and label."""
-    x, y = points
-    parameter = rules.of_largest(form, x, y).parameter
-    fine, factor = np.linspace(x.min(), x.max(), 201), rules.scale(form(x, parameter), y)
-    ax.plot(1e3 * fine, unit * factor * form(fine, parameter), look[0], color=look[1], label=look[2])
+def main(given: Sequence[str] | None = None) -> int:
+    """Run the command."""
+    parser = harness.parser(__doc__)
+    parser.add_argument("names", nargs="*", metavar="ROW", help="rows or fingers; all without a name")
+    parser.add_argument("--felt", action="store_true", help="compute the numbers of what is felt alone")
+    args = parser.parse_args(given)
+    if args.felt:
+        felt.compute(args)
+    elif not args.draw:
+        compute(args)
+    if not args.names:
+        print(draw(args.docs))
+    return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(__doc__, compute, draw))
+    sys.exit(main())

@@ -1,6 +1,6 @@
 """The rules of the verdicts, the same for every row of a kind, and the forms that are fitted to curves.
 
-Their words are in ``docs/measured.md``. A measured form of a curve stands beside another one with as many
+Their words are at the head of data/findings.toml. A measured form of a curve stands beside another one with as many
 parameters.
 """
 
@@ -11,14 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
-HIT, PART, MISS = "hit", "partly", "miss"
-BUILT = "hit by construction"
-"""The model's equations or inputs leave nothing else: such a row tests nothing."""
+from benchmarks.measured.findings import Finding
+
+HIT, PART, MISS, OPEN = "hit", "partly", "miss", "not computed"
 EXPONENT = 0.25  # from the measured exponent: what 10 % of scatter makes of a factor of 2 in voltage
 RATIO, VALUE = 1.25, 2.0  # largest factors of a ratio that is hit, and of a number that is met partly
 MISFIT = 0.1  # rms of a fitted curve
 STRIKING, SIMILAR = 0.25, 0.1  # relative changes that count as strikingly higher, and as similar
 CHANGED = 0.03  # relative change from which on a gross area counts as another: half a ridge of 17
+SPREADS = 1.5  # from the measured value
 
 
 def by_share(share: float) -> str:
@@ -35,6 +36,25 @@ def by_factor(low: float, high: float, least: float, most: float, allowed: float
     return HIT if beyond <= allowed else PART if beyond <= VALUE else MISS
 
 
+def by_spread(low: float, high: float, value: float, spread: float) -> str:
+    """Return the verdict on numbers from ``low`` to ``high`` beside a measured one and its standard deviation."""
+    return HIT if max(value - low, high - value) <= SPREADS * spread else MISS
+
+
+def by_bar(number: float, hit: float, part: float | None = None) -> str:
+    """Return the verdict on a number that should be small."""
+    return HIT if number <= hit else PART if part is not None and number <= part else MISS
+
+
+def by_rule(row: Finding, low: float, high: float) -> str:
+    """Return the verdict on numbers from ``low`` to ``high`` by the rule of a finding: ratio, range or spread."""
+    if row.spread is not None and row.rule == "spread":
+        return by_spread(low, high, row.bounds[0], row.spread)
+    sign = np.sign(row.bounds[0])
+    (least, most), (low, high) = (sorted(sign * each for each in ends) for ends in (row.bounds, (low, high)))
+    return by_factor(low, high, least, most, RATIO if row.rule == "ratio" else 1.0) if low > 0 else MISS
+
+
 def by_form(misfits: Sequence[float], others: Sequence[float]) -> str:
     """Return the verdict on a measured form of a curve, beside another form with as many parameters.
 
@@ -48,8 +68,6 @@ def by_form(misfits: Sequence[float], others: Sequence[float]) -> str:
 
 # -- forms -----------------------------------------------------------------------------------------------------
 Array = NDArray[np.float64]
-Form = Callable[[Array, float], Array]
-"""A curve over x with one parameter, of any scale."""
 
 
 class Fit(NamedTuple):
@@ -59,70 +77,32 @@ class Fit(NamedTuple):
     misfit: float
 
 
-def exponential(x: Array, b: float) -> Array:
-    """Return exp(b x / x_max) - 1."""
-    return np.asarray(np.expm1(b * x / x.max()))
+class Form(NamedTuple):
+    """A curve over x with one parameter, of any scale."""
+
+    curve: Callable[[Array, float], Array]
+    low: float
+    """Least parameter that is looked for."""
+    high: float
+    """Largest one."""
+
+    def __call__(self, x: Array, parameter: float) -> Array:
+        """Return the curve."""
+        return np.asarray(self.curve(x, parameter))
 
 
-def power(x: Array, n: float) -> Array:
-    """Return (x / x_max)^n."""
-    return np.asarray((x / x.max()) ** n)
-
-
-def line(x: Array, start: float) -> Array:
-    """Return a straight line that begins with a share of its last value."""
-    return np.asarray(start + (1 - start) * x / x.max())
-
-
-def high_pass(x: Array, cut: float) -> Array:
-    """Return the square of a first-order high-pass, with a cut-off in units of the largest x."""
-    return np.asarray(x**2 / (x**2 + (cut * x.max()) ** 2))
-
-
-def first_order(x: Array, tau: float) -> Array:
-    """Return 1 - exp(-x / tau), with a time in units of the largest x."""
-    return np.asarray(-np.expm1(-x / (tau * x.max())))
-
-
-def ramp(x: Array, end: float) -> Array:
-    """Return a straight rise that ends at a part of the largest x, and stays."""
-    return np.asarray(np.minimum(x / (end * x.max()), 1.0))
-
-
-def falling_power(x: Array, n: float) -> Array:
-    """Return (x / x_min)^-n."""
-    return np.asarray((x / x.min()) ** -n)
-
-
-def falling_line(x: Array, end: float) -> Array:
-    """Return a straight line from 1 down to a part of it."""
-    return np.asarray(1 - (1 - end) * (x - x.min()) / np.ptp(x))
-
-
-def paraboloid(x: Array, a: float) -> Array:
-    """Return 1 - (x / a)², with a half width in units of the largest |x|; 0 outside."""
-    return np.asarray(np.clip(1 - (x / (a * np.abs(x).max())) ** 2, 0, None))
-
-
-def ellipse(x: Array, a: float) -> Array:
-    """Return half an ellipse, Hertz's pressure; arguments as of :func:`paraboloid`."""
-    return np.asarray(np.sqrt(paraboloid(x, a)))
-
-
-_WIDTHS = (1.0, 10.0)
-BOUNDS: dict[Form, tuple[float, float]] = {
-    exponential: (1e-3, 50.0),
-    power: (0.05, 10.0),
-    line: (0.0, 0.99),
-    high_pass: (1e-4, 1.0),
-    first_order: (1e-3, 10.0),
-    ramp: (1e-3, 1.0),
-    falling_power: (1e-3, 10.0),
-    falling_line: (1e-3, 1.0),
-    paraboloid: _WIDTHS,
-    ellipse: _WIDTHS,
-}
-"""Where the parameter of each form is looked for."""
+exponential = Form(lambda x, b: np.expm1(b * x / x.max()), 1e-3, 50.0)
+power = Form(lambda x, n: (x / x.max()) ** n, 0.05, 10.0)
+line = Form(lambda x, start: start + (1 - start) * x / x.max(), 0.0, 0.99)
+high_pass = Form(lambda x, cut: x**2 / (x**2 + (cut * x.max()) ** 2), 1e-4, 1.0)
+"""The square of a first-order one, with a cut-off in units of the largest x."""
+first_order = Form(lambda x, tau: -np.expm1(-x / (tau * x.max())), 1e-3, 10.0)
+ramp = Form(lambda x, end: np.minimum(x / (end * x.max()), 1.0), 1e-3, 1.0)
+falling_power = Form(lambda x, n: (x / x.min()) ** -n, 1e-3, 10.0)
+falling_line = Form(lambda x, end: 1 - (1 - end) * (x - x.min()) / np.ptp(x), 1e-3, 1.0)
+paraboloid = Form(lambda x, a: np.clip(1 - (x / (a * np.abs(x).max())) ** 2, 0, None), 1.0, 10.0)
+ellipse = Form(lambda x, a: np.sqrt(paraboloid(x, a)), 1.0, 10.0)
+"""Half an ellipse, Hertz's pressure."""
 
 
 def of_each(form: Form, x: Array, y: Array) -> Fit:
@@ -144,11 +124,16 @@ def of_largest(form: Form, x: Array, y: Array) -> Fit:
     return _least(rest, form)
 
 
+def exponent(x: Array, y: Array) -> float:
+    """Return the exponent of a power law, fitted to logarithms."""
+    return float(np.polyfit(np.log(x), np.log(y), 1)[0])
+
+
 def scale(curve: Array, y: Array) -> float:
     """Return the factor by which a curve is closest to ``y``."""
     return float(curve @ y / (curve @ curve))
 
 
 def _least(rest: Callable[[float], float], form: Form) -> Fit:
-    found = minimize_scalar(rest, bounds=BOUNDS[form], method="bounded", options={"xatol": 1e-9})
+    found = minimize_scalar(rest, bounds=(form.low, form.high), method="bounded", options={"xatol": 1e-9})
     return Fit(float(found.x), float(found.fun))

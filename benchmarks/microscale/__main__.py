@@ -192,7 +192,7 @@ def draw(docs: Path) -> Path:
         "first_off": deformed[0], "area_error": areas[min(areas)] / areas[max(areas)],
         "kPa": 1e-3,
     }  # fmt: skip
-    return harness.page(docs, "microscale", "python3 -m benchmarks.microscale", globals() | names, "measured")
+    return harness.page(docs, "microscale", "python3 -m benchmarks.microscale", globals() | names)
 
 
 def _gap(value: float, spread: float) -> str:

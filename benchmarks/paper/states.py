@@ -9,8 +9,6 @@ has a section.
 """
 
 import argparse
-import json
-import resource
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -21,7 +19,6 @@ import fingerpad as fp
 from benchmarks.harness import keep, kept, made, main, run
 from benchmarks.runs import FORCES, VOLTAGES, plain
 from fingerpad.runs.batch import Summary
-from fingerpad.runs.sweep_columns import OTHER
 from fingerpad.scene import Scene
 from geometry.parameters import MeshSize
 
@@ -40,26 +37,15 @@ class Beside:
     f_t: float
     """Of the path (N/m), and"""
     ridges: int
-    states: tuple[float, ...]
-    """f_T of the sweep's states, one or two (N/m),"""
+    state: float
+    """f_T of the sweep (N/m), and"""
     touching: int
-    """ridges in the first of these."""
     reached: str
 
     @property
-    def apart(self) -> float:
-        """Least relative difference of the path's f_T to a state's."""
-        return min(abs(each / self.f_t - 1) for each in self.states)
-
-    @property
-    def bistable(self) -> bool:
-        """Whether two states were found, in which other ridges touch, by the sweep or by the path."""
-        return len(self.states) > 1 or self.ridges != self.touching
-
-    @property
-    def alike(self) -> bool:
-        """Whether the path's state is one of the sweep's, or another one of two."""
-        return self.apart <= EQUAL or self.bistable
+    def equal(self) -> bool:
+        """Whether both are one state."""
+        return abs(self.state / self.f_t - 1) <= EQUAL
 
 
 def widest(mesh: Mapping[str, float]) -> Scene:
@@ -68,34 +54,14 @@ def widest(mesh: Mapping[str, float]) -> Scene:
 
 
 def states(scene: Scene, out: Path, jobs: int) -> list[dict[str, Any]]:
-    """Return the states over all forces and voltages; those in the folder are taken from there.
-
-    The processor time (s) of all processes of the sweep is kept beside them. It is more than that of the states, by the
-    tries for another state at the ends of a chain and where another number of ridges touches.
-    """
-    before = _children()
+    """Return the states over all forces and voltages; those in the folder are taken from there."""
     found = fp.sweep(scene, out, jobs=jobs, quiet=True, states="full_slip", f_ext=FORCES, voltage=VOLTAGES)
-    spent, file = _children() - before, out / "seconds.json"
-    if not file.exists() or spent > json.loads(file.read_text(encoding="utf-8")):
-        file.write_text(json.dumps(spent), encoding="utf-8")
     return [
         {"f_ext": point.scene.f_ext, "voltage": point.scene.volts, "f_t": point.full_slip.f_t,
          "ridges": point.full_slip.ridges_in_contact, "reached": point.full_slip.reached,
-         "other": point.record.get(OTHER, {}).get("f_t"), "factorisations": point.cost.factorisations,
-         "processor_seconds": point.cost.processor_seconds}
+         "factorisations": point.cost.factorisations, "processor_seconds": point.cost.processor_seconds}
         for point in found.results if point.full_slip is not None
     ]  # fmt: skip
-
-
-def _children() -> float:
-    """Return the processor time (s) of this program's children that have ended."""
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
-
-
-def _of_sweep(out: Path) -> float:
-    """Return the processor time (s) of the sweep of a folder."""
-    return float(json.loads((out / "seconds.json").read_text(encoding="utf-8")))
 
 
 def paths(mesh: Mapping[str, float], args: argparse.Namespace) -> dict[tuple[float, float], Summary]:
@@ -112,10 +78,9 @@ def beside(rows: Sequence[Mapping[str, Any]], found: Mapping[tuple[float, float]
     for row in rows:
         path = found[row["f_ext"], row["voltage"]]
         if path.get("full_slip_f_t") is not None:
-            values = [each for each in (row["f_t"], row["other"]) if each is not None]
             listed.append(
                 {"f_ext": row["f_ext"], "voltage": row["voltage"], "f_t": path["full_slip_f_t"],
-                 "ridges": path["full_slip_ridges_in_contact"], "states": values, "touching": row["ridges"],
+                 "ridges": path["full_slip_ridges_in_contact"], "state": row["f_t"], "touching": row["ridges"],
                  "reached": row["reached"]}
             )  # fmt: skip
     return listed
@@ -128,13 +93,12 @@ def compute(args: argparse.Namespace) -> None:
     larger, found = states(widest(LARGER), folder / "larger", args.jobs), paths(LARGER, args)
     seconds = [summary["processor_seconds"] for summary in found.values() if "processor_seconds" in summary]
     numbers |= {"larger": larger, "beside": beside(larger, found), "seconds_of_paths": seconds}
-    numbers["seconds_of_sweep"] = _of_sweep(folder / "default")
     keep("paper_states", numbers, made(found.values()), args.docs)
 
 
 def compared(numbers: Mapping[str, Any]) -> list[Beside]:
     """Return the paths beside the states of docs/paper_states.json."""
-    return [Beside(**{**each, "states": tuple(each["states"])}) for each in numbers["beside"]]
+    return [Beside(**each) for each in numbers["beside"]]
 
 
 def shown(docs: Path) -> dict[str, Any]:
@@ -145,8 +109,8 @@ def shown(docs: Path) -> dict[str, Any]:
     larger = [row["processor_seconds"] for row in numbers["larger"] if row["reached"] != "path"]
     return {
         "beside": listed,
-        "equal": [each for each in listed if each.apart <= EQUAL],
-        "two": [each for each in listed if each.bistable or not each.alike],
+        "equal": [each for each in listed if each.equal],
+        "other": [each for each in listed if not each.equal],
         "count": len(numbers["default"]),
         "direct": len(direct),
         "factorisations": sum(row["factorisations"] for row in direct) / len(direct),

@@ -10,14 +10,14 @@ import argparse
 import json
 import sys
 import tomllib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from benchmarks.harness import keep, kept, made, page, parser, run, solve, table
+from benchmarks.harness import keep, kept, made, main, page, run, solve, table
 from benchmarks.stability.solve import Case
 from fingerpad.runs.batch import Summary
 from fingerpad.scene import Scene, from_data
@@ -168,18 +168,14 @@ def draw(docs: Path) -> Path:
     return page(docs, "stability", "environment/run python3 -m benchmarks.stability", globals() | names)
 
 
-def main(given: Sequence[str] | None = None) -> int:
-    """Run what is missing, keep its numbers and draw the page."""
-    asked = parser(__doc__, "stability")
-    asked.add_argument("--part", choices=("single", "random"), help="run this part alone, and keep the other's numbers")
-    args = asked.parse_args(given)
+def compute(args: argparse.Namespace) -> None:
+    """Run what is missing and keep its numbers."""
     for part, found in (("single", lambda: {"runs": single(args)}), ("random", lambda: {"random": random(args)})):
-        if not args.draw and args.part in (None, part):
+        if args.part in (None, part):
             old = kept("stability", args.docs)
             keep("stability", old.numbers | found(), made() if part == "single" else old.made, args.docs)
-    print(draw(args.docs))
-    return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    alone = {"choices": ("single", "random"), "help": "run this part alone, and keep the other's numbers"}
+    sys.exit(main(__doc__, compute, draw, out="stability", part=alone))

@@ -1,6 +1,5 @@
 """Settings of the documentation site; environment/docs builds it from the pages in place."""
 
-import json
 import re
 import sys
 from pathlib import Path
@@ -18,7 +17,7 @@ import fingerpad.startup  # noqa: F401
 from fingerpad.calculator import page as calculator
 from fingerpad.cli import params
 from fingerpad.scene import Scene
-from fingerpad.scene.keys import every, schema
+from fingerpad.scene.keys import every
 
 project, author = "fingerpad", "The fingerpad developers"
 version = re.search(r'^version = "(.*)"', (ROOT / "pyproject.toml").read_text(), re.MULTILINE)[1]
@@ -81,7 +80,7 @@ WORDS = {
     "docs/command": {"": ["Windows", "WSL", "macOS", "Docker", "conda", "install"], "## Targets": ["target"]},
     "docs/drive": {"": ["alternating voltage", "frequency", "waveform"]},
     "docs/measured": {"## What is felt": ["nerve", "perception", "spike"]},
-    "docs/assumptions": {"## Fingers by name": ["child", "old", "moisture", "sweat", "callus"]},
+    "docs/fingers": {"": ["child", "old", "moisture", "sweat", "callus"]},
     "docs/newtons": {"": ["newton", "contact area"]},
     "docs/scene": {"## `[electric]`": ["coating", "insulator", "dielectric", "permittivity"]},
     "docs/laws": {"## Viscous layers": ["viscous", "relaxation", "creep"]},
@@ -130,7 +129,6 @@ def setup(app: Any) -> None:
     """Register what is above."""
     reference.write(HERE / "modules")
     (ROOT / "docs/scene.md").write_text(params.page([*every(Scene)]) + "\n", encoding="utf-8")
-    (ROOT / "docs/scene.schema.json").write_text(json.dumps(schema(Scene), indent=1), encoding="utf-8")
     plain_types(BaseModel)
     app.add_source_parser(Percent)
     app.connect("source-read", adapt)

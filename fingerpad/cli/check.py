@@ -18,6 +18,7 @@ from fingerpad.results.files import check_folder
 from fingerpad.results.quantities import KNOWN
 from fingerpad.results.terminal import about
 from fingerpad.scene import Load, Scene, SceneError
+from fingerpad.scene.controls import ends_of
 from fingerpad.scene.loads import ways
 from fingerpad.scene.messages import counted
 from fingerpad.scene.remarks import finger_in_words, used
@@ -86,8 +87,8 @@ def _along(scene: Scene) -> Iterator[tuple[Load, float | None, float, float]]:
     """Yield each load, how far it moves the bone (m) where that is known, and its force (N/m) and peak voltage (V)."""
     force = voltage = 0.0
     for _, load, moved in ways(scene.loads()):
-        force = load.f_ext if load.f_ext is not None else force
-        voltage = load.wave.peak if load.wave is not None else voltage if load.level is None else load.level
+        force = force if load.f_ext is None else ends_of(load.f_ext)[1]
+        voltage = load.drive.peak if load.drive is not None else voltage if load.level is None else load.level
         yield load, moved, force, voltage
 
 

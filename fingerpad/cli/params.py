@@ -7,7 +7,7 @@ from typing import Any
 
 from fingerpad.cli.arguments import Parser, echo
 from fingerpad.scene import Scene
-from fingerpad.scene.keys import Key, every, schema
+from fingerpad.scene.keys import Key, every
 from fingerpad.scene.messages import SceneError, clip
 
 _WIDTH = 120
@@ -15,7 +15,6 @@ _EXAMPLES = """
     fingerpad params roughness
     fingerpad params --toml > scene.toml
     fingerpad params --markdown > scene.md
-    fingerpad params --schema > scene.schema.json
 """
 _PAGE = """# Scene reference
 
@@ -28,8 +27,6 @@ default: the name of a load, the shape of a waveform and the file of a height ma
 - Numbers are in SI units. A number with a unit can be given as text: `"10 um"`, `"50 N/m"`.
 - Forces are per metre of finger out of the plane of the cross-section (N/m).
 - A value outside its range is refused with the key, the value, the range and, where likely, the unit that was meant.
-- Editors complete and check keys by [scene.schema.json](scene.schema.json), which `fingerpad params --schema` prints.
-  For taplo and for Even Better TOML in VS Code, the first line of a scene is `#:schema path/to/scene.schema.json`.
 - *Assumption* marks choices that the paper leaves open. [assumptions.md](assumptions.md) gives their effect.
 
 `fingerpad params --markdown` writes this page from the program's own definitions."""
@@ -42,11 +39,7 @@ def main(argv: Sequence[str]) -> int:
     form = parser.add_mutually_exclusive_group()
     form.add_argument("--toml", action="store_true", help="as a complete scene file of the defaults, with comments")
     form.add_argument("--markdown", action="store_true", help="as a page: the scene reference")
-    form.add_argument("--schema", action="store_true", help="as a JSON Schema for editors")
     args = parser.read(argv)
-    if args.schema:
-        echo(json.dumps(schema(Scene), indent=1, ensure_ascii=False))
-        return 0
     found = [key for key in every(Scene) if args.filter.lower() in key.name.lower()]
     if not found:
         raise SceneError(f"no key of a scene has {clip(args.filter)} in its name; fingerpad params lists all of them")

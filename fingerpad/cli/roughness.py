@@ -11,7 +11,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from fingerpad.cli import output
-from fingerpad.cli.arguments import PICTURE, Parser, echo, path, quantities, scene_of, several
+from fingerpad.cli.arguments import Parser, echo, path, quantities, scene_of, several
 from fingerpad.model.cautions import examine
 from fingerpad.results.quantities import QUANTITIES, Output
 from fingerpad.scene import Scene, from_data, override
@@ -24,7 +24,6 @@ from variational.roughness.closure import STICKING
 from variational.roughness.heightfile import Found, scan
 from variational.roughness.spectrum import HURST, Fit, power_spectrum, roughness_table
 from variational.roughness.tabulated import TabulatedClosure
-from variational.roughness.topography import distribution
 
 _PRESSURES = "1e3:1e6:13:log"
 _COLUMNS = (
@@ -42,7 +41,7 @@ _MICROSCALE = """
     fingerpad microscale --set roughness.law=BoundaryElements --voltage 0,100 --p 1e3:5e5:30:log
 """
 _TOPOGRAPHY = """
-    fingerpad topography skin.csv --unit um --size "100 um" "100 um" --plot skin.png
+    fingerpad topography skin.csv --unit um --size "100 um" "100 um"
     fingerpad topography skin.vk4
 """
 
@@ -148,7 +147,6 @@ def topography(argv: Sequence[str]) -> int:
     parser = Parser("topography", _TOPOGRAPHY)
     parser.add_argument("file", type=path, metavar="FILE", help="matrix of heights, or a file of an instrument")
     parser.add_table("roughness.topography")
-    parser.add_file("--plot", PICTURE, "picture of the map")
     args = parser.read(argv)
     found = _scan(args)
     try:
@@ -156,9 +154,6 @@ def topography(argv: Sequence[str]) -> int:
     except ValueError as error:
         raise SceneError(f"{clip(str(args.file), 80)}: {error}") from None
     echo("\n".join(_report(args.file, found, table, fit)))
-    if args.plot:
-        _draw_map(args.plot, args.file.name, found)
-        echo(f"# Written: {args.plot}")
     return 0
 
 
@@ -184,41 +179,19 @@ def _scan(args: argparse.Namespace) -> Found:
 
 def _report(file: Path, found: Found, table: dict[str, float], fit: Fit) -> Iterator[str]:
     """Yield the table of a scene, and as comments what was found."""
-    m, um = found.map, 1e6
-    heights = distribution(m.detrended("curvature"))
-    (lx, ly), missing = m.size, found.missing
-    yield f"# {clip(str(file), 80)}: {found.layout}"
-    a, b = m.pixel
-    yield f"# {lx * um:.4g} µm x {ly * um:.4g} µm, in pixels of {a * um:.4g} µm x {b * um:.4g} µm"
-    yield f"# rms height {m.h_rms * um:.3g} µm, without curvature {heights.h_rms * um:.3g} µm"
-    if missing:
-        share = 100 * missing / m.heights.size
-        yield f"# {missing} pixels missing ({share:.2g} %), filled smoothly, which makes h_rms a little smaller"
-    yield f"# skewness {heights.skewness:.2f}, kurtosis {heights.kurtosis:.2f} (0 and 3 of the Gaussian of the model)"
+    (lx, ly), um, missing = found.map.size, 1e6, found.missing
+    lost = f", {missing} pixels missing and filled" if missing else ""
+    yield f"# {clip(str(file), 80)}: {found.layout}, {lx * um:.4g} µm x {ly * um:.4g} µm{lost}"
     long, short = (2e6 * math.pi / q for q in fit.q_range)
     hurst = f"{fit.hurst:.2f}" if fit.hurst_found else f"not found within {HURST[0]:g} to {HURST[1]:g}"
     yield f"# Hurst exponent {hurst}, fitted between wavelengths of {long:.3g} µm and {short:.3g} µm"
-    if fit.resolved:
-        yield f"# roll-off at {fit.wavelength * um:.3g} µm: the largest wavelength"
-    else:
+    if not fit.resolved:
         yield "# no roll-off within the map: the shorter side of the map stands for the largest wavelength"
-    for remark in on_waves(table["wavelength"], min(m.size), Scene().geometry.ridge_wavelength):
+    for remark in on_waves(table["wavelength"], min(found.map.size), Scene().geometry.ridge_wavelength):
         yield f"# {remark}"
     try:
         from_data({"roughness": {key: float(f"{value:.4g}") for key, value in table.items()}})
     except SceneError as error:
         yield f"# a scene refuses these values: {error}; is the unit of the heights right?"
-    yield ""
-    yield "[roughness]"
-    for key, value in table.items():
-        yield f"{key} = {value:.4g}"
-
-
-def _draw_map(file: Path, name: str, found: Found) -> None:
-    """Draw the map without curvature."""
-    flat, um = found.map.detrended("curvature"), 1e6
-    with output.panels(file, f"{name}: curvature removed") as (figure, (ax,)):
-        limit, ends = float(np.abs(flat.heights).max()) * um, (0, flat.size[0] * um, 0, flat.size[1] * um)
-        image = ax.imshow(flat.heights.T * um, origin="lower", extent=ends, cmap="cividis", vmin=-limit, vmax=limit)
-        figure.colorbar(image, ax=ax, label="height (µm)", shrink=0.8)
-        ax.set(xlabel="x (µm)", ylabel="y (µm)")
+    yield "\n[roughness]"
+    yield from (f"{key} = {value:.4g}" for key, value in table.items())

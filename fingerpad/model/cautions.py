@@ -22,8 +22,8 @@ from fingerpad.model import drive_loads
 from fingerpad.results.data import ResultData
 from fingerpad.results.states import long_steps
 from fingerpad.scene import Scene, remarks
+from fingerpad.scene.controls import CarriedWaveform
 from fingerpad.scene.drive import Drive, drive_of
-from fingerpad.scene.waveform import Waveform
 from variational.caution import Caution
 from variational.contact.formulation import Formulation
 from variational.roughness.closure import PAST_THE_FOLD, Closure, air_gaps
@@ -207,7 +207,7 @@ def _breakdown_ahead(scene: Scene) -> list[Caution]:
     share, loads = drive_loads.gap_factor(scene), scene.loads()
     part = gap / (gap + scene.h_0) * (1.0 if share is None else float(share(gap)))
     found = [(name, gap, abs(load.level) * part) for load in loads if load.level]
-    found += [_over_period(_drive(scene, load.wave), name, gap) for load in loads if load.wave is not None]
+    found += [_over_period(_drive(scene, load.drive), name, gap) for load in loads if load.drive is not None]
     return _breakdown(found)
 
 
@@ -236,7 +236,7 @@ def _breakdown(points: Iterable[_Across]) -> list[Caution]:
     return [Caution("breakdown", text, float(volts))]
 
 
-def _drive(scene: Scene, wave: Waveform) -> Drive:
+def _drive(scene: Scene, wave: CarriedWaveform) -> Drive:
     return drive_of(wave, scene.electric, scene.geometry.sc_thickness)
 
 
@@ -265,9 +265,9 @@ def _periods(scene: Scene, states: Sequence[ContactState]) -> Iterator[_Across]:
 
     One of the two is the farthest beyond breakdown: the voltage across a gap rises with it, and the field falls.
     """
-    of_wave, loads = dict[Waveform, list[tuple[float, str]]](), scene.loads()
+    of_wave, loads = dict[CarriedWaveform, list[tuple[float, str]]](), scene.loads()
     for state in states:
-        wave = loads[state.load_number - 1].wave if 0 < state.load_number <= len(loads) else None
+        wave = loads[state.load_number - 1].drive if 0 < state.load_number <= len(loads) else None
         mean = wave is not None and (scene.electric.follows == "mean" or wave.carrier is not None)
         if scene.drive is not None or mean:
             touching, gaps = _in_contact(state)

@@ -15,11 +15,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fingerpad.scene import Load, Scene
+from fingerpad.scene.controls import CarriedWaveform, VoltageWaveform
 from fingerpad.scene.drive import GAPS, REFERENCE, Drive, drive_of
 from fingerpad.scene.loads import ways
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.wavefile import POINTS
-from fingerpad.scene.waveform import Waveform
 from geometry.units import computed
 from variational.attraction.circuit import Network
 
@@ -77,19 +77,20 @@ def loads(scene: Scene) -> tuple[Load, ...]:
     """
     found = list(scene.loads())
     for k, (key, load, way) in enumerate(ways(found)):
-        if load.wave is None:
+        wave, mean = load.drive, scene.electric.follows == "mean"
+        if wave is None:
             continue
-        drive, mean = drive_of(load.wave, scene.electric, scene.geometry.sc_thickness), scene.electric.follows == "mean"
-        if not mean and drive.circuit.lossless and load.wave.carrier is None:
+        drive = drive_of(wave, scene.electric, scene.geometry.sc_thickness)
+        if not mean and drive.circuit.lossless and wave.carrier is None:
             continue
         seconds = load.seconds(way or 0.0)
         times, volts = ([0.0, seconds], 2 * [drive.reference]) if mean else _over_time(drive, seconds)
         if len(times) > POINTS:
             raise SceneError(
-                f"{key}.voltage has {seconds / load.wave.period:.4g} periods in {seconds:g} s, which need {len(times)} "
+                f"{key}.voltage has {seconds / wave.period:.4g} periods in {seconds:g} s, which need {len(times)} "
                 f"points and at most {POINTS} are possible; take a shorter load, or electric.follows = 'mean'"
             )
-        found[k] = load.model_copy(update={"voltage": _table(times, volts, load.wave.period)})
+        found[k] = load.model_copy(update={"voltage": _table(times, volts, wave.period)})
     return tuple(found)
 
 
@@ -121,7 +122,7 @@ def _over_time(drive: Drive, seconds: float) -> tuple[Array, Array]:
     return t, np.sqrt(np.maximum(found, 0.0))
 
 
-def _table(times: ArrayLike, volts: ArrayLike, period: float) -> Waveform:
+def _table(times: ArrayLike, volts: ArrayLike, period: float) -> CarriedWaveform:
     """Return a waveform of a table; jumps take a short time."""
     given: Array = np.asarray(times, dtype=np.float64)
     t = [float(each) for each in given]
@@ -129,4 +130,4 @@ def _table(times: ArrayLike, volts: ArrayLike, period: float) -> Waveform:
         if given[k] - given[k - 1] < _JUMP * period:
             t[k] = t[k - 1] + _JUMP * period
     with computed():
-        return Waveform(waveform="file", times=tuple(t), voltages=tuple(map(float, np.asarray(volts))))
+        return VoltageWaveform(waveform="file", times=tuple(t), values=tuple(map(float, np.asarray(volts))))

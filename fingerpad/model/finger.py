@@ -11,6 +11,7 @@ from scipy.spatial import cKDTree
 
 from fingerpad.model.options import FingerModel, refuse_mesh, refuse_sizes
 from fingerpad.model.state import contact_state, force_error, refuse_unbalanced
+from fingerpad.scene.controls import ends_of
 from geometry import fingertip, mesh, meshfile, tags
 from geometry.profiles import Profiles
 from variational.attraction.electroadhesion import ELECTROSTATIC
@@ -145,7 +146,7 @@ def assembled(
         model.closure,
         element=numerics.element,
         points=numerics.quadrature_points,
-        force_scale=max((load.f_ext for load in model.loads if load.f_ext), default=1.0),
+        force_scale=max((ends_of(load.f_ext)[1] for load in model.loads if load.f_ext), default=1.0),
         tolerance=numerics.tolerance,
         mirror=tagged.facets(tags.SYMMETRY) if half else None,
         coupling_tolerance=numerics.coupling_tolerance,

@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 from fingerpad.model.drive_loads import GapFactor
 from fingerpad.model.options import FingerModel
 from fingerpad.model.simulation import Simulation
+from fingerpad.scene.controls import number_of
 from variational.coefficients import between
 from variational.contact.friction import Friction
 from variational.roughness.closure import Closure
@@ -44,7 +45,7 @@ class Conditions:
     @classmethod
     def of(cls, model: FingerModel) -> "Conditions":
         """Return those at the end of a model's loads."""
-        force = [load.f_ext for load in model.loads if load.f_ext is not None]
+        force = [force for load in model.loads if (force := number_of(load.f_ext)) is not None]
         voltage = [load.level for load in model.loads if load.level is not None]
         return cls(force[-1], [0.0, *voltage][-1], model.friction, model.closure, model.h_0, model.share)
 

@@ -29,6 +29,7 @@ from typing import Any
 from fingerpad.model import drive_loads
 from fingerpad.results.terminal import about
 from fingerpad.scene import Numerics, Scene
+from fingerpad.scene.controls import ends_of
 from fingerpad.scene.messages import SceneError, qualify
 from fingerpad.scene.viscosity import viscous_layers
 from geometry import sizing
@@ -234,8 +235,8 @@ def by_rule(scene: Scene) -> Scene:
     if scene.mesh.touching_half_arc is not None:
         return scene
     finger, law = scene.geometry, scene.friction_law()
-    force = max((load.f_ext for load in scene.loads() if load.f_ext), default=0.0)
-    depth = max((-load.bone_height for load in scene.loads() if load.bone_height), default=0.0)
+    force = max((ends_of(load.f_ext)[1] for load in scene.loads()), default=0.0)
+    depth = max((-ends_of(load.bone_height)[0] for load in scene.loads()), default=0.0)
     ridges = _RIDGES * Fingertip().ridge_wavelength / finger.ridge_wavelength * (force / _FORCE) ** _WIDENS
     radius = finger.width**2 / (2 * finger.height)
     lowered = math.sqrt(2 * radius * max(depth, 0.0)) / finger.ridge_wavelength

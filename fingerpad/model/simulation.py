@@ -77,7 +77,7 @@ class Simulation:
         self._slip = FullSlip(finger)
         self._timed = any(load.takes_time for load in model.loads)
         self._began = self._seconds = 0.0  # when the present load began, and how long it takes (s)
-        self._over_time = False  # whether its voltage is over time
+        self._over_time = False  # whether it has a waveform
         self._x, self._runs = 0.0, 0  # where the bone was when it began (m), and how often the path was run for it
         self._passed = 0  # runs of the load at which another process has been, the last of them not to its end
         self._half_kept: dict[str, Any] | None = None
@@ -276,7 +276,7 @@ class Simulation:
         return self._path.time
 
     def _done(self, part: float) -> float:
-        """Return the part of the present load that is done, in time where its voltage is over time."""
+        """Return the part of the present load that is done, in time where it has a waveform."""
         timed = self._over_time and self._seconds > 0
         return min((self._time - self._began) / self._seconds, 1.0) if timed else part
 

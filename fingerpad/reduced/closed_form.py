@@ -4,24 +4,19 @@ It has the numbers of the model "cylinders" (:mod:`fingerpad.reduced.cylinders`)
 and known errors. Friction, roughness and coating are those of the scene; shape and layers are in the press.
 """
 
-from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
-from typing import Any, NamedTuple
-
-import numpy as np
+from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from fingerpad.reduced.cylinders import over_forces
 from fingerpad.reduced.press import Press, of
 from fingerpad.scene.scene import Scene
 from fingerpad.slices import traces
-from fingerpad.slices.total import Profile, Total, at_force, profile
+from fingerpad.slices.total import at_force, profile
 from fingerpad.slices.trace import Trace, columns, trace
-from variational.roughness.closure import Closure
 from variational.state import ContactState
 
 _SLIP = "full_slip"
 _LARGEST = 400.0  # N/m, at the end of a trace
-_KEPT = 64  # traces, by voltage
 
 
 class Answer(NamedTuple):
@@ -53,6 +48,7 @@ class ClosedForm:
 
     scene: Scene
     press: Press
+    _traces: dict[float | None, Trace] = field(default_factory=dict)
 
     def section(self, f_ext: float, voltage: float | None = None) -> Answer:
         """Return full slip of the middle section.
@@ -69,7 +65,7 @@ class ClosedForm:
         values = columns([state], self.scene.geometry.ridge_wavelength)
         return Answer(
             state.mu_app, state.f_t, state.f_electrostatic, state.contact_length, float(values["gross_width"][0]),
-            -state.bone_height, float(self._closure(p_c).d_eq),
+            -state.bone_height, float(self.scene.closure()(p_c).d_eq),
         )  # fmt: skip
 
     def finger(self, force: float, voltage: float | None = None) -> Answer:
@@ -82,37 +78,25 @@ class ClosedForm:
         Raises:
             SceneError: there is no equilibrium, or the pad along the finger is too short for the force.
         """
-        total: Total = at_force(self._profile, self._trace(voltage), force, self.scene.slices.count)
+        slices = self.scene.slices
+        total = at_force(profile(slices), self._trace(voltage), force, slices.count)
         sums, weight = total.totals, total.thickness * total.columns["contact_length"]
-        gaps = np.asarray(self._closure(np.maximum(total.pressure, 1e-300)).d_eq)
+        gaps = self.scene.closure()(total.pressure[weight > 0]).d_eq
         return Answer(
             total.mu_app, sums["f_t"], sums["f_electrostatic"], sums["contact_area"], sums["gross_area"], total.delta,
-            float(weight @ gaps / weight.sum()),
+            float(weight[weight > 0] @ gaps / weight.sum()),
         )  # fmt: skip
 
     def _states(self, f_ext: list[float], voltage: float | None) -> list[ContactState]:
         scene = self.scene if voltage is None else self.scene.model_copy(update={"voltage": float(voltage)})
-        depths = self.press.indentation(f_ext, _SLIP).tolist()
-        found = over_forces(scene, f_ext, _SLIP, self.press)
-        return [replace(state, bone_height=-depth) for state, depth in zip(found, depths, strict=True)]
+        return self.press.lowered(over_forces(scene, f_ext, _SLIP, self.press), _SLIP)
 
-    @cached_property
-    def _trace(self) -> Any:
-        """The trace of the section by voltage, of which the last ones are kept."""
-
-        def made(voltage: float | None) -> Trace:
-            forces = traces.grid(_LARGEST / 2, _LARGEST)
-            return trace(self._states(forces, voltage), self.scene.geometry.ridge_wavelength)
-
-        return lru_cache(_KEPT)(made)
-
-    @cached_property
-    def _closure(self) -> Closure:
-        return self.scene.closure()
-
-    @cached_property
-    def _profile(self) -> Profile:
-        return profile(self.scene.slices)
+    def _trace(self, voltage: float | None) -> Trace:
+        """Return the trace of the section at a voltage (V), which is kept for other forces."""
+        if voltage not in self._traces:
+            states = self._states(traces.grid(_LARGEST / 2, _LARGEST), voltage)
+            self._traces[voltage] = trace(states, self.scene.geometry.ridge_wavelength)
+        return self._traces[voltage]
 
 
 def closed_form(scene: Scene | None = None, press: Press | None = None) -> ClosedForm:

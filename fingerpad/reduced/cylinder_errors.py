@@ -23,6 +23,7 @@ from typing import Any, NamedTuple
 
 from fingerpad.results.quantities import FINGER, QUANTITIES
 from fingerpad.results.states import WORDS
+from fingerpad.scene.fingers import PAPER
 from fingerpad.scene.keys import every
 from fingerpad.scene.messages import show
 from fingerpad.scene.reading import flat
@@ -53,6 +54,8 @@ class Region:
     The range :data:`PULL` is one of results."""
     errors: _Bands
     """Errors over the printed value, of the attraction and of lengths: of a section by its states, of a finger."""
+    finger: str = PAPER
+    """Name of the finger whose other keys it has."""
 
 
 class Outside(NamedTuple):
@@ -82,13 +85,20 @@ _DEFAULT_SCREEN = Region(
 )
 
 
+def _read(file: str) -> tuple[Region, ...]:
+    """Return the regions of a file of this folder."""
+    made = json.loads((files("fingerpad.reduced") / file).read_text(encoding="utf-8"))
+    made = [each | {"ranges": {key: tuple(ends) for key, ends in each["ranges"].items()}} for each in made]
+    return tuple(Region(**each) for each in made)
+
+
 def _regions() -> tuple[Region, ...]:
     """Return the regions: that of the default screen, and those that ``python3 -m benchmarks.loads`` has written."""
-    text = (files("fingerpad.reduced") / "cylinder_errors.json").read_text(encoding="utf-8")
-    made = [each | {"ranges": {key: tuple(ends) for key, ends in each["ranges"].items()}} for each in json.loads(text)]
-    return (_DEFAULT_SCREEN, *(Region(**each) for each in made))
+    return (_DEFAULT_SCREEN, *_read("cylinder_errors.json"))
 
 
+FINGERS = _read("finger_errors.json")
+"""Errors of other fingers by name, of ``python3 -m benchmarks.presses``."""
 REGIONS = _regions()
 """Errors that cover the full model's states: tests/test_known_error.py and tests/test_loads.py derive them from those
 of docs/models.json and docs/loads.json."""
@@ -117,7 +127,7 @@ def find(scene: Scene, pull: float = 0.0) -> Region | None:
         pull: attraction at full slip over that force.
     """
     given = _given(scene, pull)
-    return next((region for region in REGIONS if not any(_outside(given, region))), None)
+    return next((region for region in (*REGIONS, *FINGERS) if not any(_outside(given, region))), None)
 
 
 def outside(scene: Scene, pull: float = 0.0) -> list[Outside]:
@@ -127,7 +137,7 @@ def outside(scene: Scene, pull: float = 0.0) -> list[Outside]:
     Arguments are those of :func:`find`.
     """
     given = _given(scene, pull)
-    found = ([*_outside(given, region)] for region in reversed(REGIONS))
+    found = ([*_outside(given, region)] for region in reversed((*FINGERS, *REGIONS)))
     return min(found, key=lambda keys: (len(keys), sum(each.far for each in keys)))
 
 
@@ -138,7 +148,7 @@ def cautions(scene: Scene, pull: float = 0.0) -> list[Caution]:
     """
     keys = outside(scene, pull)
     tables = Counter(each.key.partition(".")[0] for each in keys)
-    many = {table: Outside(table, "another one", "that of the default scene") for table in tables if tables[table] > 2}
+    many = {table: Outside(table, "another one", "that of a finger by name") for table in tables if tables[table] > 2}
     words = dict.fromkeys(str(many.get(each.key.partition(".")[0], each)) for each in keys)
     return [Caution("error_unknown", f"the error of this model is not known here: {'; '.join(words)}")] if words else []
 
@@ -155,7 +165,7 @@ def _given(scene: Scene, pull: float) -> dict[str, Any]:
 
 def _outside(given: Mapping[str, Any], region: Region) -> Iterator[Outside]:
     """Yield the keys in which values are outside of a region."""
-    default, units, others = _default(), _units(), set[str]()
+    default, units, others = _default(region.finger), _units(), set[str]()
     if "force" in given and "force" not in region.ranges:
         yield Outside("force", _span(given["force"], given["force"], units["force"]), "sections alone")
     tables = (key for key in {**default, **given} if key.partition(".")[0] in _TABLES)
@@ -182,8 +192,8 @@ def _number(value: Any) -> bool:
 
 
 @cache
-def _default() -> dict[str, Any]:
-    return flat(Scene().parameters())
+def _default(finger: str = PAPER) -> dict[str, Any]:
+    return flat(Scene(finger=finger).parameters())  # type: ignore[arg-type]
 
 
 @cache

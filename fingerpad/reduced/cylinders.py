@@ -20,10 +20,11 @@ contact pressure:
 
 The one number :math:`\kappa` (:data:`SHEAR`) is fitted to the attraction of states of the full model of the default
 finger, of seeded scenes over coatings, forces, voltages and friction coefficients. Other states test it, and so do all
-contact lengths (``docs/closed_form.md``). The number of ridges stays that of the press.
+contact lengths (``docs/closed_form.md``). The number of ridges stays that of the press. A press without full slip has
+the ridges and the length that friction leaves of its contact (:mod:`fingerpad.reduced.press`), and the same κ.
 
-The model leaves out that ridges in the middle bear more than those at the edge, and that ridges come and go with the
-voltage. ``docs/closed_form.md`` has its errors.
+The model leaves out that ridges in the middle bear more than those at the edge, and that ridges come with the voltage.
+``docs/closed_form.md`` has its errors.
 """
 
 import time
@@ -65,11 +66,14 @@ _FLAT = 0.01
 
 def _source(scene: Scene) -> str:
     """Return in words where the contact length is from."""
-    low, high = (press.of(scene).forces[k] for k in (0, -1))
+    own = press.of(scene)
+    low, high = own.forces[0], own.forces[-1]
     source = "uncharged contact length interpolated between forces of one press of this finger"
     if not low <= scene.f_ext <= high:
         source = f"uncharged contact length extrapolated from a press of this finger at {low:g} to {high:g} N/m"
-    if scene.friction != press.KNOWN:
+    if not own.slid:
+        source += "; that of full slip less what friction rolls off"
+    elif scene.friction != press.KNOWN:
         source += f"; that of full slip with a friction coefficient of {press.KNOWN:g}, and shorter by more shear"
     return source
 
@@ -89,9 +93,7 @@ class Cylinders(Model):
         self, scene: Scene, f_ext: Sequence[float], state: str, solve: Callable[[Scene], Result]
     ) -> list[ContactState]:
         """Return the states computed together, with the indentations without voltage."""
-        depths = press.of(scene).indentation(f_ext, state).tolist()
-        found = over_forces(scene, f_ext, state)
-        return [replace(each, bone_height=-depth) for each, depth in zip(found, depths, strict=True)]
+        return press.of(scene).lowered(over_forces(scene, f_ext, state), state)
 
     def of_finger(self, scene: Scene, section: Result, finger: "WholeFinger") -> Result:
         """Return the result with the known error of the whole finger, or a caution that it is not known."""
@@ -185,21 +187,24 @@ def _over_forces(
     shear: float = SHEAR,
 ) -> list[tuple[ContactState, RidgeState]]:
     """Return the states of :func:`over_forces`, and those of a ridge."""
-    own = pressed or press.of(scene)
-    if isinstance(own, Press):
-        length, ridges = own.length(f_ext, state), own.ridge_count(f_ext, state)
+    own, force, law = pressed or press.of(scene), np.array(f_ext), scene.friction_law()
+    length = own.length(f_ext, state) if isinstance(own, Press) else np.array([each.contact_length for each in own])
+
+    def solved(left: Any = 1.0) -> tuple[NDArray[np.int_], list[RidgeState]]:
+        """Return how many ridges are in contact, and their states, with a part of the press's contact left."""
+        if isinstance(own, Press):
+            ridges = own.ridge_count(f_ext, state, left)
+        else:
+            ridges = np.array([each.ridges_in_contact for each in own])
+        return ridges, _ridges(scene, state, force / ridges, left * length / ridges, tips, shear)
+
+    if state == "full_slip" and law is not None and isinstance(own, Press) and not own.slid:
+        left = own.left(law.limit, force, 0.0, length)
+        ridges, found = solved(left)
+        pulled, touching = np.array([(ridge.f_attraction, ridge.length) for ridge in found]).T * ridges / left
+        ridges, found = solved(own.left(law.limit, force, pulled, touching))
     else:
-        length = np.array([each.contact_length for each in own])
-        ridges = np.array([each.ridges_in_contact for each in own])
-    forces, tip, closure = np.array(f_ext) / ridges, tip_of(scene.geometry, length / ridges, tips), scene.closure()
-    lengths = tips ** (1 / tip.power) * length / ridges
-    moduli, stiffening = tip.modulus(forces, lengths), _stiffening(scene, state, shear)
-    voltage = scene.volts if scene.drive is None else scene.drive.effective
-    try:
-        found = Cylinder(tip, moduli, scene.h_0, closure, stiffening).under_loads(forces, voltage)
-    except NoEquilibriumError as error:
-        why = "; ".join(filter(None, (str(error), sticking(closure, scene.volts))))
-        raise SceneError(f"{WORDS[state]} of the model 'cylinders': {why}") from None
+        ridges, found = solved()
     states = []
     for each, count, ridge in zip(f_ext, ridges, found, strict=True):
         n = int(count)
@@ -212,6 +217,19 @@ def _over_forces(
         under = scene.model_copy(update={"f_ext": float(each)})
         states.append((reduced_state(under, contact, state == "full_slip"), ridge))
     return states
+
+
+def _ridges(scene: Scene, state: str, forces: Array, lengths: Array, tips: float, shear: float) -> list[RidgeState]:
+    """Return the states of ridges under external forces (N/m), with lengths in contact (m) without voltage."""
+    tip, closure = tip_of(scene.geometry, lengths, tips), scene.closure()
+    moduli = tip.modulus(forces, tips ** (1 / tip.power) * lengths)
+    voltage = scene.volts if scene.drive is None else scene.drive.effective
+    try:
+        ridge = Cylinder(tip, moduli, scene.h_0, closure, _stiffening(scene, state, shear))
+        return ridge.under_loads(forces, voltage)
+    except NoEquilibriumError as error:
+        why = "; ".join(filter(None, (str(error), sticking(closure, scene.volts))))
+        raise SceneError(f"{WORDS[state]} of the model 'cylinders': {why}") from None
 
 
 def _stiffening(scene: Scene, state: str, shear: float) -> Callable[[Array], Array] | None:

@@ -1,4 +1,4 @@
-"""A finger's press without voltage: what its closed form has of geometry, layers and contact.
+r"""A finger's press without voltage: what its closed form has of geometry, layers and contact.
 
 A :class:`Press` has the length in contact, the ridges in contact and the indentation over the external force. It does
 not depend on voltage, coating, roughness or friction. So the closed form of :mod:`fingerpad.reduced.cylinders` answers
@@ -11,13 +11,19 @@ press is a hash of the scene's tables ``geometry``, ``materials`` and ``contact`
 The default finger's is of full runs with a contact size of 10 µm up to 150 N/m, at full slip with a friction
 coefficient of 0.25, of docs/models.json. Beyond, it is the last of these, times the ratios of states on a coarser mesh,
 of docs/loads.json. ``benchmarks.models`` and ``benchmarks.loads`` print the numbers. Other presses have no full slip.
-Their contact is then shorter by :data:`ROLLED`, the mean of full runs of the default and of a flat, soft finger, which
-have 1 to 6 % (docs/presses.json).
+
+**Rolling.** Friction shears a finger, its bone rises, and ridges leave the screen, while those in contact keep their
+length. The part of the contact that is left is even in the friction force. In full runs of two flat fingers, over
+forces, voltages and laws of friction, it is about
+
+.. math:: 1 - \frac{f_T^2}{f_{ext} F}, \qquad F = 270 \text{ N/m}.
+
+*Assumption*: so for other fingers without a full slip. F (:data:`ROLL`) is a fit (docs/closed_form.md).
 """
 
 import json
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
 from functools import cache
 from hashlib import sha256
 from importlib.resources import files
@@ -31,6 +37,7 @@ from fingerpad.results.files import replace_json
 from fingerpad.scene.messages import SceneError, show
 from fingerpad.scene.scene import Scene
 from variational.roughness import gaps
+from variational.state import ContactState
 
 Array = NDArray[np.float64]
 FORCES = (2.0, 3.86, 7.45, 14.4, 27.8, 53.6, 104.0, 200.0)
@@ -39,10 +46,11 @@ MESH = {"contact": 1 / 24, "receptor": 1 / 8, "interface": 1 / 4}
 """Element sizes of the path over the wavelength of the ridges."""
 FINE = 1 / 12
 """Facets in contact of the states, on which they are solved again, over the wavelength; a sixteenth where it ends."""
-ROLLED = 0.965
-"""Contact length at full slip with a friction coefficient of :data:`KNOWN`, over that of the press."""
+ROLL = 270.0
+"""F (N/m)."""
 KNOWN = 0.25
 """Friction coefficient whose shear the contact at full slip has."""
+_ROLLS, _LEAST_LEFT = 20, 0.4  # iterations, and the least part of the contact that may be left
 _TABLES = ("geometry", "materials", "contact")
 _SITES = ("merkel_offset", "meissner_offset", "file", "file_sha256")  # of the geometry, without effect on a press
 _VERSION = 1
@@ -55,37 +63,61 @@ class Press:
     forces: tuple[float, ...]
     """External forces (N/m)."""
     lengths: Mapping[str, tuple[float, ...]]
-    """Length in contact (m) by state, ``charged``, normal contact, and ``full_slip``."""
+    """Length in contact (m) by state: ``charged``, normal contact, and ``full_slip`` where that is known."""
     ridges: Mapping[str, tuple[int, ...]]
     """Ridges in contact, likewise."""
     indentations: Mapping[str, tuple[float, ...]]
     """How far the bone is lowered (m), likewise."""
+    roll: float | Array = ROLL
+    """F (N/m); of similar fingers that are solved for together one of each."""
 
     @classmethod
     def of(cls, kept: Mapping[str, Any]) -> "Press":
-        """Return a press from its file; at full slip from that of normal contact, where the file has no other."""
+        """Return a press from its file."""
         found = {name: {state: tuple(values) for state, values in kept[name].items()} for name in _COLUMNS}
-        for name, by_state in found.items():
-            factor = ROLLED if name == "lengths" else 1
-            by_state.setdefault("full_slip", tuple(factor * each for each in by_state["charged"]))
         return cls(tuple(kept["forces"]), **found)  # type: ignore[arg-type]
+
+    @property
+    def slid(self) -> bool:
+        """Whether it has full slip, of runs; elsewhere it has normal contact alone."""
+        return "full_slip" in self.lengths
 
     def length(self, f_ext: ArrayLike, state: str) -> Array:
         """Return the contact length (m) under external forces (N/m) in a state."""
-        return self.interpolate(f_ext, self.lengths[state])
+        return self.interpolate(f_ext, self.lengths.get(state, self.lengths["charged"]))
 
-    def ridge_count(self, f_ext: ArrayLike, state: str) -> NDArray[np.int_]:
-        """Return the number of ridges in contact; arguments of :meth:`length`."""
-        return np.maximum(np.rint(self.interpolate(f_ext, self.ridges[state])).astype(int), 1)
+    def ridge_count(self, f_ext: ArrayLike, state: str, left: ArrayLike = 1.0) -> NDArray[np.int_]:
+        """Return the number of ridges in contact, of which a part is left; arguments of :meth:`length`."""
+        found = self.interpolate(f_ext, self.ridges.get(state, self.ridges["charged"]))
+        return np.maximum(np.rint(np.asarray(left) * found).astype(int), 1)
 
     def indentation(self, f_ext: ArrayLike, state: str) -> Array:
         """Return how far the bone is lowered (m), without voltage; arguments of :meth:`length`.
 
         A voltage of 200 V moves the bone of the default finger at full slip by up to 6 %.
         """
-        return self.interpolate(f_ext, self.indentations[state])
+        return self.interpolate(f_ext, self.indentations.get(state, self.indentations["charged"]))
 
-    def interpolate(self, f_ext: ArrayLike, values: tuple[float, ...] | tuple[int, ...]) -> Array:
+    def left(self, limit: Callable[[Array], Array], force: Array, attraction: Any, length: Array) -> Array:
+        """Return the part of the contact without friction that is left at full slip.
+
+        Args:
+            limit: of friction (Pa), at contact pressures (Pa).
+            force: external forces (N/m).
+            attraction: of the whole contact (N/m), which grows with the part that is left.
+            length: of the whole contact (m), likewise.
+        """
+        part = np.ones_like(force)
+        for _ in range(_ROLLS):
+            f_t = limit(force / (part * length) + attraction / length) * part * length
+            part = np.maximum(1 - f_t**2 / (force * self.roll), _LEAST_LEFT)
+        return part
+
+    def lowered(self, states: Iterable[ContactState], state: str) -> list[ContactState]:
+        """Return states of one kind with the indentations without voltage."""
+        return [replace(each, bone_height=-float(self.indentation(each.f_ext, state))) for each in states]
+
+    def interpolate(self, f_ext: ArrayLike, values: Sequence[float]) -> Array:
         """Return power laws through the two neighbours, at the ends through the last two; shape of the forces."""
         x, y, at = np.log(self.forces), np.log(values), np.log(f_ext)
         k = np.clip(np.searchsorted(x, at) - 1, 0, len(x) - 2)

@@ -176,19 +176,21 @@ def _line(points: Any) -> str:
     return "".join(found)
 
 
-def bars(kept: Mapping[str, Any], error: float, of: str) -> Markup:
-    """Return how far friction is solved and its likely range, with its parts, as bars over a logarithmic scale.
+def bars(kept: Mapping[str, Any], error: float, of: str, people: Mapping[str, Any]) -> Markup:
+    """Return how far friction is solved and its likely ranges, with parts, as bars over a logarithmic scale.
 
     Args:
         kept: the band, as a record has it, with its ``parts``.
         error: of the solution; NaN where it is not known.
         of: what the friction is of.
+        people: the range over people, as a record has it; without both ends none is drawn.
     """
     mu = kept["mu_app"]
     solved = {"name": "solved to", "low": mu - error, "high": mu + error, "colour": "blue"}
     parts = [solved] * (error < mu)
     parts += [
         {**kept, "name": "likely range", "colour": "vermilion"},
+        *([{**people, "name": "over people", "colour": "green"}] if people.get("high") else []),
         *(each | {"colour": "soft"} for each in kept["parts"]),
     ]
     every = [part[key] for part in parts for key in ("low", "high", "at_least") if part.get(key) is not None]

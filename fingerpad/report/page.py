@@ -34,7 +34,7 @@ def _environment() -> Environment:
     made = Environment(
         loader=PackageLoader("fingerpad", "report"), autoescape=True, trim_blocks=True, undefined=StrictUndefined
     )
-    made.filters |= {"typeset": typeset, "symbols": _symbols, "sentence": _sentence, "cell": _cell}
+    made.filters |= {"typeset": _typeset, "symbols": _symbols, "sentence": _sentence, "cell": _cell}
     return made
 
 
@@ -60,7 +60,7 @@ def page(template: str, title: str, **values: Any) -> str:
     return str(render("base.html", title=title, body=Markup(body), style=style, script=script))
 
 
-def typeset(words: object) -> Markup:
+def _typeset(words: object) -> Markup:
     """Return words as text of a page: symbols with their subscripts, as d_eq, and no line that breaks in a value."""
     return Markup(_VALUE.sub("\u00a0", SYMBOL.sub(r"\1<sub>\2</sub>", str(escape(words)))))
 
@@ -74,7 +74,7 @@ def _symbols(words: object) -> Markup:
 def _sentence(words: str) -> Markup:
     """Return a sentence with its first part, up to a bracket or a mark, in bold."""
     first = re.split(r"(?=[,;:]| \()", words, maxsplit=1)[0]
-    return Markup(f"<b>{typeset(first[0].upper() + first[1:])}</b>{typeset(words[len(first) :])}.")
+    return Markup(f"<b>{_typeset(first[0].upper() + first[1:])}</b>{_typeset(words[len(first) :])}.")
 
 
 def _cell(value: Any) -> str:

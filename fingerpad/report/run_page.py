@@ -69,14 +69,15 @@ def _factor(result: Result) -> str:
 def _claims(result: Result) -> list[str]:
     """Return sentences on how far the number is solved and known, without their points."""
     found = result.headline
-    known = (line.removesuffix(".") for line in found.known.splitlines())
-    return [words for words in (found.solved, *known, found.remark.removesuffix(".")) if words]
+    known = (line.removesuffix(".") for line in (found.people, *found.known.splitlines(), found.remark))
+    return [words for words in (found.solved, *known) if words]
 
 
 def bars_of(result: Result) -> Markup:
     """Return the bars of a result's band; empty without one."""
     found = result.headline
-    return bars(result.record[KNOWN], found.error, found.of) if found.known else Markup()
+    people = result.people if found.people else {}
+    return bars(result.record[KNOWN], found.error, found.of, people) if found.known else Markup()
 
 
 def _asked(result: Result) -> Iterator[tuple[str, ...]]:

@@ -14,6 +14,7 @@ from fingerpad.results.quantities import (
     MESH,
     MODEL,
     PENALTY,
+    PEOPLE,
     QUANTITIES,
     SLICES,
     SUMS,
@@ -142,6 +143,14 @@ class ResultData:
         number there; ``low`` too where it is the result's own one. Empty without friction under a voltage.
         """
         return dict(self.record.get(KNOWN, {}))
+
+    @property
+    def people(self) -> dict[str, Any]:
+        """Range of µ_app at full slip over people: ``low`` and ``high``, of nine in ten, and ``spreads``.
+
+        An end is None where it is open. Without a range it has ``why`` alone. Empty without friction.
+        """
+        return dict(self.record.get(PEOPLE, {}))
 
     @property
     def whole(self) -> bool:

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from fingerpad.results.data import ResultData
-from fingerpad.results.quantities import FINGER, KNOWN, MESH, MODEL, QUANTITIES, Output
+from fingerpad.results.quantities import FINGER, KNOWN, MESH, MODEL, PEOPLE, QUANTITIES, Output
 from fingerpad.results.states import LoadResult, called
 from fingerpad.scene.fingers import FINGERS
 from variational.state import ContactState
@@ -58,6 +58,8 @@ class Headline:
     """Least and largest value (SI) over time, where the number is a range."""
     known: str = ""
     """The likely range of the number, a sentence a line; empty where there is none."""
+    people: str = ""
+    """Its likely range over people, a sentence; empty where there is none."""
     remark: str = ""
     """What a reader must know of the finger's name, a sentence; empty for none."""
 
@@ -99,7 +101,8 @@ class Headline:
         if self.number:
             lines.append(f"  {self.symbol} of the {self.of} {self.number}, {self.at}.")
         lines += [f"  {self.solved[0].upper()}{self.solved[1:]}."] if self.solved else []
-        return "\n".join([*lines, *(f"  {line}" for line in (*self.known.splitlines(), self.remark) if line)])
+        more = (self.people, *self.known.splitlines(), self.remark)
+        return "\n".join([*lines, *(f"  {line}" for line in more if line)])
 
 
 def headline(result: ResultData) -> Headline:
@@ -163,7 +166,9 @@ def _of_states(result: ResultData, finger: "WholeFinger | None", slip: ContactSt
     number, error, parts = result.number(name, key, whole)
     kept, at = result.record.get(KNOWN, {}), f"{at}, {load} and {volts:.4g} V"
     known = known_in_words(kept) if name == "full_slip" and kept and kept["whole"] == whole else ""
-    return Headline(sentence, of, quantities[key], number, at, error, parts, known=known)
+    range_over = result.record.get(PEOPLE, {})
+    people = people_in_words(range_over) if name == "full_slip" and range_over.get("whole") == whole else ""
+    return Headline(sentence, of, quantities[key], number, at, error, parts, known=known, people=people)
 
 
 def _over_time(load: LoadResult, slip: ContactState | None) -> Headline:
@@ -260,6 +265,14 @@ def known_in_words(kept: Mapping[str, Any]) -> str:
     lacks = [f"Not in it: {', '.join(kept['not_known'])}, whose error is not known at this force."]
     lines = ["; ".join([f"Likely range {span(kept)}", *opened]) + ".", f"With one assumption changed: {parts}."]
     return "\n".join([*lines, *bounds, *(lacks if kept["not_known"] else [])])
+
+
+def people_in_words(kept: Mapping[str, Any]) -> str:
+    """Return a kept range over people, a sentence; empty without a low end."""
+    if kept.get("low") is None:
+        return ""
+    high = f"{kept['high']:.2f}" if kept["high"] is not None else "no upper end, since ridges of some adhere"
+    return f"Likely range over people {kept['low']:.2f} to {high} (nine in ten)."
 
 
 def _opened(part: Mapping[str, Any]) -> str:

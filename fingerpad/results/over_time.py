@@ -1,7 +1,7 @@
 r"""Means over time and the spectrum of friction of a load over time, from its accepted states.
 
 Between two states a quantity follows the monotone cubic curve of Fritsch and Carlson (SciPy's ``PchipInterpolator``),
-which never leaves the range of the two. The curve is cut where the voltage jumps or has a corner. Mean and amplitudes
+which never leaves the range of the two. The curve is cut where the waveform jumps or has a corner. Mean and amplitudes
 are integrals of this curve, by 20 Gauss points between two states:
 
 .. math:: a_k = \frac{2}{n T} \left| \int_{nT} f_T(t) \, e^{-2 \pi i k t / T} dt \right|
@@ -59,7 +59,7 @@ class OverTime:
     f_t_amplitude: tuple[float, ...] = ()
     """Amplitudes of the friction force at these frequencies (N/m)."""
     mean_change: dict[str, float] = field(default_factory=dict)
-    """What every second state alone would change the means by, in their units; of loads at a constant voltage."""
+    """What every second state alone would change the means by, in their units; of loads without a waveform."""
 
 
 def over_time(states: Sequence[ContactState], wave: Waveform | None) -> OverTime | None:
@@ -67,7 +67,7 @@ def over_time(states: Sequence[ContactState], wave: Waveform | None) -> OverTime
 
     Args:
         states: at the begin of the load and of the load, in order, with their times.
-        wave: its voltage over time; None where it is constant.
+        wave: its waveform; None without one.
     """
     times = np.array([state.time for state in states])
     start, seconds = float(times[0]), float(times[-1] - times[0])
@@ -96,9 +96,9 @@ def over_time(states: Sequence[ContactState], wave: Waveform | None) -> OverTime
 
 
 def without_parts_of_jumps(states: Sequence[ContactState], start: float = -math.inf) -> list[ContactState]:
-    """Return states over time without those in which a jump of the voltage is done in part.
+    """Return states over time without those in which a jump of a waveform is done in part.
 
-    A jump takes no time. Where a solve reaches it in parts, these have voltages that the waveform never has.
+    A jump takes no time. Where a solve reaches it in parts, these have values that the waveform never has.
 
     Args:
         states: in order, with their times.

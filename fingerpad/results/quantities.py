@@ -201,7 +201,8 @@ STEPS = _listed(
     result="f_ext voltage bone_height mu_app f_t f_electrostatic f_contact contact_length p_max ridges_in_contact",
     given="step load f_ext voltage bone_x",
     found="f_t mu_app f_electrostatic f_contact bone_height ridges_in_contact contact_length p_max",
-    load="mu_app f_t contact_length f_electrostatic",
+    load="f_ext bone_height mu_app f_t contact_length f_electrostatic",
+    target="mu_app f_t contact_length f_electrostatic",
     sweep="mu_app f_t contact_length f_electrostatic ridges_in_contact",
     short="mu_app f_t contact_length",
     slip="mu_app f_t",
@@ -313,8 +314,8 @@ SWEPT = in_table("sweep")
 FRICTION = in_table("slip")
 """Those that are printed at full slip alone."""
 CHANGES = {"error": "whole known error", "penalty": "estimated change for a rigid screen"}
-BAND, KNOWN = "closures", "known"
-"""Keys of the bands of friction in a record: over models of roughness, and over all assumptions."""
+BAND, KNOWN, PEOPLE = "closures", "known", "people"
+"""Keys of the bands of friction in a record: over models of roughness, over all assumptions, and over people."""
 MESH, PENALTY, MODEL = "mesh", "penalty", "closed form"
 """Parts of the error of a section, in words; those of a whole finger are in :mod:`fingerpad.slices.errors`."""
 PER_LENGTH = (

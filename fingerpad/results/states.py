@@ -17,7 +17,7 @@ from operator import attrgetter
 
 from fingerpad.results.over_time import OverTime, over_time, without_parts_of_jumps
 from fingerpad.results.quantities import EXTREMES
-from fingerpad.scene import Load
+from fingerpad.scene.loads import Load
 from fingerpad.scene.waveform import Waveform
 from variational.caution import Caution
 from variational.state import ContactState
@@ -168,7 +168,7 @@ class LoadResult:
     over_time: OverTime | None = None
     """Means over time and spectrum of friction; None where the load takes no time."""
     full_slip_part: float = math.nan
-    """Part of the load's states after its begin that are of full slip; NaN where its voltage is no waveform."""
+    """Part of the load's states after its begin that are of full slip; NaN where it has no waveform."""
     needs: float = math.nan
     """About how far from where it was unloaded the bone must be for full slip at every voltage of the load (m); NaN
     where it is there, or where friction does not grow from there on."""
@@ -231,7 +231,7 @@ def load_result(
         mine: its states.
         stable: whether the state at its end is stable, None where this was not examined.
         before: the state at its begin, if there is one.
-        wave: its voltage over time; None where it is constant.
+        wave: its waveform; None without one.
         mu_0: see :func:`load_results`.
     """
     # A waveform has a state of its own at its begin, after a jump from the voltage before.
@@ -270,7 +270,7 @@ def _needed(states: Sequence[ContactState], mu_0: float | None) -> float:
 
 
 def long_steps(loads: Iterable[LoadResult], least: float) -> list[Caution]:
-    """Return a caution for each load at a constant voltage whose steps are too long for its means.
+    """Return a caution for each load without a waveform whose steps are too long for its means.
 
     Args:
         loads: of a run.

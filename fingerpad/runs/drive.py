@@ -30,7 +30,7 @@ from numpy.typing import ArrayLike, NDArray
 from fingerpad.model.cautions import examine, on_scene
 from fingerpad.reduced.cylinders import Cylinders
 from fingerpad.runs.context import RunContext
-from fingerpad.runs.solve import solved
+from fingerpad.runs.solve import find, solved
 from fingerpad.scene import Scene
 from fingerpad.scene.drive import REFERENCE, Drive
 from fingerpad.scene.messages import SceneError
@@ -194,7 +194,7 @@ def thresholds(scene: Scene, frequencies: Sequence[float] = FREQUENCIES) -> list
 
 def _curve(scene: Scene, given: Drive) -> tuple[Array, Array, Array]:
     """Return squares of voltages (V²), and there the friction force and the air gap of a ridge (m)."""
-    model, context = Cylinders(), RunContext()
+    model, context = find(Cylinders.name), RunContext()
 
     def at(voltage: float) -> tuple[float, float]:
         with computed():  # a part of a small amplitude may be less than a scene can have

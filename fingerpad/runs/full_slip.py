@@ -2,8 +2,7 @@
 
 Points that share a mesh are followed in chains: the first one by its path, each further one from the full slip of the
 one before (:mod:`fingerpad.model.full_slip`), or by a path of its own where it is not found from there. Neighbours in
-a chain differ in one value of one key. Where another number of ridges touches than at the neighbour, the chain also
-goes back: skin may have two states of full slip, and each of them is found from one side. Both are then reported.
+a chain differ in one value of one key. Where skin has two states of full slip, a chain reports the one on its side.
 
 With errors (``output.errors``) a chain is followed on the mesh of a run's path, whose elements are larger. Each of its
 states is solved for again on the scene's own mesh, finest where the state's own contact ends, and the two meshes give
@@ -36,14 +35,12 @@ from fingerpad.model.state import broken
 from fingerpad.results.data import Cost
 from fingerpad.results.files import below
 from fingerpad.results.provenance import provenance
-from fingerpad.results.quantities import SWEPT
 from fingerpad.results.result import Result
 from fingerpad.runs import batch
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.post import kept
 from fingerpad.runs.processes import limit_processor_time
 from fingerpad.runs.restarts import finer
-from fingerpad.runs.sweep_columns import OTHER
 from fingerpad.scene import Scene, from_data
 from fingerpad.scene.messages import counted
 from fingerpad.scene.reading import DEFAULT_MODEL
@@ -54,8 +51,6 @@ from variational.solvers.outcome import Counts
 from variational.state import PATH, ContactState
 
 _SLIP = "full_slip"
-_SAME_STATE = 1e-3
-"""Relative difference of f_t up to which states with equal ridges are one: from two sides 3e-5 is seen."""
 _OF_RUN = ("path_mesh", "accuracy", "restarts", "force_error", "provenance")  # what a point keeps of a run's record
 
 
@@ -109,7 +104,7 @@ class Chain:
         self._shared = any(gap_factor(scene) is not None for scene in scenes)
         self._slips: FullSlips | None = None
         self._fine: FineSolver | None = None  # of their states
-        self._solved: list[Solved | None] = []  # of the present mesh, by scene
+        self._before: Solved | None = None  # the last state of the present mesh
         self.results: list[Result] = []
 
     def follow(self) -> Iterator[int]:
@@ -117,7 +112,6 @@ class Chain:
         for k, scene in enumerate(self._scenes):
             self.results.append(self._next(scene))
             yield k
-            yield from self._back(k)
 
     def model(self, scene: Scene) -> FingerModel:
         """Return the model of a scene, with the parts and the ridges of all."""
@@ -131,11 +125,10 @@ class Chain:
         """Return the result of a scene, from the one before or by a path."""
         clock, model, why = Clock(self._comm), self.model(scene), ""
         conditions, found = Conditions.of(model), None
-        before = next((each for each in reversed(self._solved) if each is not None), None)
         counts = Counts() if self._slips is None else replace(self._slips.finger.solver.counts)
-        if before is not None and self._slips is not None:
+        if self._before is not None and self._slips is not None:
             try:
-                found = self._slips.solve(conditions, before)
+                found = self._slips.solve(conditions, self._before)
             except StepFailed as error:
                 why = str(error)
         if found is None:
@@ -143,12 +136,11 @@ class Chain:
                 slips = self._path(model)
                 found, counts = slips.first(conditions), Counts()
             except StepFailed as error:
-                self._solved.append(None)
                 return Result(scene, DEFAULT_MODEL, None, None, None, failure=str(error), record={"reached": ""})
             if self._slips is not None:
                 self._slips.finger.solver.iteration.free()
-            self._slips, self._fine, self._solved = slips, None, [None] * len(self._solved)
-        self._solved.append(found)
+            self._slips, self._fine = slips, None
+        self._before = found
         assert self._slips is not None
         try:
             fine = self._final(model, found.state)
@@ -185,35 +177,6 @@ class Chain:
             kept, states = simulation.carried() if restart.carries else None, simulation.states
             simulation.finger.solver.iteration.free()
             model = restart.model
-
-    def _back(self, k: int) -> Iterator[int]:
-        """Solve for the scenes before a scene from there, where other ridges touch; yield those with a second state."""
-        start, before = self._solved[k], self._solved[k - 1] if k else None
-        if start is None or before is None or start.state.ridges_in_contact == before.state.ridges_in_contact:
-            return
-        for j in range(k - 1, -1, -1):
-            mine = self._solved[j]
-            if mine is None or self._slips is None:
-                return
-            try:
-                start = self._slips.solve(mine.conditions, start)
-            except StepFailed:
-                return
-            if _same(start.state, mine.state):
-                return
-            try:
-                fine = self._final(self.model(self._scenes[j]), start.state)
-            except StepFailed:  # on the scene's own mesh it is none
-                continue
-            other, known = start.state if fine is None else fine.state, self.results[j].full_slip
-            if known is not None and not _same(other, known):
-                self.results[j] = _with_other(self.results[j], other)
-                yield j
-
-
-def _same(a: ContactState, b: ContactState) -> bool:
-    """Return whether two states are one."""
-    return a.ridges_in_contact == b.ridges_in_contact and abs(a.f_t - b.f_t) <= _SAME_STATE * abs(b.f_t)
 
 
 # -- results -------------------------------------------------------------------------------------------------
@@ -283,16 +246,6 @@ def _of_run(scene: Scene, why: str, clock: Clock, comm: MPI.Comm) -> Result:
         cautions=found.cautions,
         record={key: found.record[key] for key in _OF_RUN if key in found.record} | {"reached": PATH},
     )
-
-
-def _with_other(result: Result, other: ContactState) -> Result:
-    """Return a result with a second state of full slip, and a caution that gives both."""
-    mine = result.full_slip
-    assert mine is not None
-    both = [f"f_T {s.f_t:.6g} N/m with {counted(s.ridges_in_contact, 'ridge')} ({s.reached})" for s in (mine, other)]
-    caution = Caution("two_states", f"there are two states of full slip: {both[0]} and {both[1]}", other.f_t)
-    record = result.record | {OTHER: {name: getattr(other, name) for name in (*SWEPT, "reached")}}
-    return replace(result, record=record, cautions=(*result.cautions, caution))
 
 
 def main(file: Path, folder: Path) -> None:

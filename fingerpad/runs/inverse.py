@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from fingerpad.reduced.cylinders import Cylinders
 from fingerpad.reduced.model import Model
 from fingerpad.results.data import Number
-from fingerpad.results.quantities import EXTREMES, FINGER, QUANTITIES, Output, plus_minus_of
+from fingerpad.results.quantities import FINGER, QUANTITIES, Output, in_table, plus_minus_of
 from fingerpad.results.result import Result
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.roots import EQUAL, Axis, Roots, axis
@@ -66,7 +66,7 @@ def _target(name: str, given: float | str, relative: bool, whole: bool) -> Targe
         SceneError: no such quantity, no number, or a unit that does not fit.
     """
     tables = {True: {key: each for key, each in FINGER.items() if key != "f_ext"},
-              False: {key: QUANTITIES[key] for key in EXTREMES}}  # fmt: skip
+              False: {key: QUANTITIES[key] for key in in_table("target")}}  # fmt: skip
     found = [(table[name], of) for of in (whole, not whole) if name in (table := tables[of])]
     if not found:
         known = ", ".join(dict.fromkeys([*tables[False], *tables[True]]))

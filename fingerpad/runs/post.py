@@ -106,6 +106,7 @@ def _page(result: Result, context: RunContext) -> bool:
 SUMS = Entry("sums of outputs", _sums, lambda result, _: result.finger is not None)
 WORDS = Entry("headline", _words)
 BANDS = Entry("bands of friction", "fingerpad.reduced.closure_band:with_band", lambda r, c: c.report or r.follows_path)
+PEOPLE = Entry("range over people", "fingerpad.reduced.people_band:with_people", BANDS.needs)
 NEWTONS = Entry(
     "newtons of the whole finger",
     "fingerpad.slices.estimate:with_newtons",
@@ -115,6 +116,7 @@ POST: list[Entry] = [
     NEWTONS,
     SUMS,
     BANDS,
+    PEOPLE,
     cautions_on(),
     WORDS,
     Entry(

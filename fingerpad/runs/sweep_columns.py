@@ -21,8 +21,6 @@ from fingerpad.slices.finger import WholeFinger
 if TYPE_CHECKING:
     from fingerpad.results.result import Result
 
-OTHER = "full_slip_other"
-"""Beginning of the columns of a second state of full slip, where there are two."""
 LOAD = "load"
 """Beginning of the columns of a load over time."""
 FORCE = "full_slip_finger_f_ext"
@@ -41,7 +39,7 @@ def row(result: "Result") -> dict[str, Any]:
     cells = _with_errors(names, dataset.values(result))
     if alone:
         cells["full_slip_reached"] = result.record["reached"]
-    cells |= {f"{OTHER}_{key}": value for key, value in result.record.get(OTHER, {}).items()} | newtons
+    cells |= newtons
     for load in result.loads:
         cells |= _in_time(load)
     return cells | {"failure": result.failure}

@@ -69,7 +69,7 @@ class Sweep:
         if isinstance(k, slice):
             return tuple(self[place] for place in range(len(self))[k])
         result = self.results[k]
-        return result if KNOWN in result.record else post.applied(result, [post.BANDS])
+        return result if KNOWN in result.record else post.applied(result, [post.BANDS, post.PEOPLE])
 
     @property
     def whole(self) -> bool:

@@ -23,8 +23,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from pydantic import BeforeValidator, Discriminator, Tag, model_validator
 
+from fingerpad.scene.controls import CarriedWaveform
 from fingerpad.scene.messages import NAME, NUMBER, TABLE, show
-from fingerpad.scene.waveform import Waveform
 from geometry.units import Finite, Table, within
 from variational.attraction.circuit import LEAKS, GapCircuit, Network, fit_leak
 from variational.attraction.dielectric import TISSUES, VACUUM_PERMITTIVITY, TabledTissue, insulator_thickness
@@ -174,7 +174,7 @@ class Measures:
 class Drive:
     """A drive and the circuit behind it."""
 
-    wave: Waveform
+    wave: CarriedWaveform
     circuit: GapCircuit
     layers: tuple[float, float, float]
     """d_i (m), eps_i and d_sc (m)."""
@@ -250,7 +250,7 @@ class Drive:
 
 
 @cache
-def drive_of(wave: Waveform, electric: Electric, d_sc: float) -> Drive:
+def drive_of(wave: CarriedWaveform, electric: Electric, d_sc: float) -> Drive:
     """Return the drive of a drive.
 
     Args:
@@ -261,7 +261,7 @@ def drive_of(wave: Waveform, electric: Electric, d_sc: float) -> Drive:
     return Drive(wave, electric.circuit(d_sc), (electric.d_i, electric.eps_i, d_sc), electric.h_0(d_sc))
 
 
-def refuse_drives(drives: Mapping[str, Waveform], electric: Electric, d_sc: float) -> None:
+def refuse_drives(drives: Mapping[str, CarriedWaveform], electric: Electric, d_sc: float) -> None:
     """Refuse insulators without a circuit, and drives that break down every gap or whose frequency no tissue has.
 
     Args:
@@ -292,7 +292,7 @@ def _widest(h_0: float) -> float:
     return float(np.max(breakdown_voltage(gaps) * (gaps + h_0) / gaps))
 
 
-def one_period(wave: Waveform) -> Array:
+def one_period(wave: CarriedWaveform) -> Array:
     """Return the voltages of a drive at equal times over the period with which it repeats itself, from its start on.
 
     Returns:

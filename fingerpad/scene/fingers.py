@@ -71,8 +71,7 @@ _STIFFNESS = '"Age and gender effect on human tactile perception, in vivo", abst
 _MOISTURE = "Yuan and Verma 2006, Colloids and Surfaces B 48, 6 to 12, abstract"
 _FRICTION = "Buchholz, Frederick and Armstrong 1988, Ergonomics 31, 317 to 325, as tabled on a page of the authors"
 NOT_MEASURED = (
-    "No one finger was measured for these values: they are from several sources, fitted, or assumed "
-    "(docs/assumptions.md)."
+    "No one finger was measured for these values: they are from several sources, fitted, or assumed (docs/fingers.md)."
 )
 MOISTURE = (
     f"{NOT_MEASURED} Moisture raises the attraction of a constant voltage here, without losses; people with moist "

@@ -1,8 +1,4 @@
-"""Every key of a scene: unit, default, range and meaning, and their JSON Schema, from the models themselves.
-
-By the JSON Schema of scenes editors complete and check TOML files. A number with a unit may also be a text such as
-``"10 um"``. What concerns several keys at once, and whether a unit fits, is checked by the program alone.
-"""
+"""Every key of a scene: unit, default, range and meaning, from the models themselves."""
 
 import ast
 import inspect
@@ -10,28 +6,16 @@ import re
 import textwrap
 import types
 from collections.abc import Iterator
-from dataclasses import MISSING, Field, dataclass, replace
+from dataclasses import MISSING, dataclass, replace
 from functools import cache
 from itertools import pairwise
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from pydantic import BaseModel, WrapValidator
-from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
-from pydantic_core import core_schema
 
+from fingerpad.scene.controls import LoadKey
 from fingerpad.scene.law_keys import LawKey, keys_of, range_of
-from geometry.units import QUANTITIES, Range
-
-DIALECT = "https://json-schema.org/draft/2020-12/schema"
-_NUMBER = r"^\s*[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{1,3})?"
-_NUMBER_AND_UNIT = _NUMBER + r"\s*[^\s0-9.+-].*$"
-_SWEEP = {
-    "type": "object",
-    "description": "Of a study, for fingerpad sweep: a list or a range such as 0:200:5 by key.",
-    "additionalProperties": {
-        "anyOf": [{"type": "array", "minItems": 1}, {"type": "string"}, {"type": "object"}],
-    },
-}
+from geometry.units import Range
 
 
 @dataclass(frozen=True)
@@ -83,10 +67,11 @@ def by_name(scene: type[BaseModel]) -> dict[str, Key]:
 def _of(model: type[BaseModel], table: str, instance: BaseModel | None) -> Iterator[Key]:
     inner, laws = [], list[tuple[str, LawKey, str]]()
     for name, field in model.model_fields.items():
-        parts = tuple(_parts(field.annotation)) + tuple(field.metadata)
+        own = next((part.annotation for part in field.metadata if isinstance(part, LoadKey)), field.annotation)
+        parts = tuple(_parts(own)) + tuple(field.metadata)
         law = next((part for part in parts if isinstance(part, LawKey)), None)
         if law is not None:
-            meaning = plain_text(field.description)
+            meaning = _plain_text(field.description)
             if law.number:
                 limits = range_of(keys_of(law.default)[law.number])
                 yield Key(table + name, getattr(law.default, law.number), meaning, limits)
@@ -102,7 +87,7 @@ def _of(model: type[BaseModel], table: str, instance: BaseModel | None) -> Itera
             ):  # may be a number or a name too
                 continue
         required = instance is None and field.is_required()
-        meaning = plain_text(field.description)
+        meaning = _plain_text(field.description)
         yield Key(table + name, None if required else value, meaning, *_allowed(parts), required=required)
     for where, key, meaning in laws:
         yield from _of_law(where, key, meaning)
@@ -180,122 +165,11 @@ def docstrings(law: type) -> dict[str, str]:
     for line, after in pairwise(getattr(body, "body", [])):
         if isinstance(line, ast.AnnAssign) and isinstance(line.target, ast.Name):
             if isinstance(after, ast.Expr) and isinstance(after.value, ast.Constant):
-                found[line.target.id] = plain_text(str(after.value.value))
+                found[line.target.id] = _plain_text(str(after.value.value))
     return found
 
 
-def plain_text(text: str | None) -> str:
+def _plain_text(text: str | None) -> str:
     """Return a docstring as a line of text, without the marks of reStructuredText."""
     text = re.sub(r":\w+:`~?([^`]*)`", r"\1", " ".join((text or "").split()))
     return re.sub(r"\*([Aa]ssumption)\*", r"\1", text.replace("``", ""))
-
-
-# -- schema --------------------------------------------------------------------------------------------
-class _Generator(GenerateJsonSchema):
-    """Writes ranges and texts with a unit, where pydantic sees a function; TOML has no null."""
-
-    def function_wrap_schema(self, schema: core_schema.WrapValidatorFunctionSchema) -> JsonSchemaValue:
-        """Return the schema of a number within a range."""
-        function = schema["function"]["function"]
-        return _number(function) if isinstance(function, Range) else super().function_wrap_schema(schema)
-
-    def function_plain_schema(self, schema: core_schema.PlainValidatorFunctionSchema) -> JsonSchemaValue:
-        """Return the schema of a law."""
-        key = getattr(schema["function"]["function"], "__self__", None)
-        return _law(key) if isinstance(key, LawKey) else super().function_plain_schema(schema)
-
-    def nullable_schema(self, schema: core_schema.NullableSchema) -> JsonSchemaValue:
-        """Return the schema of the value; a key that may be missing is left out."""
-        return self.generate_inner(schema["schema"])
-
-    def default_schema(self, schema: core_schema.WithDefaultSchema) -> JsonSchemaValue:
-        """Return the schema with its default, unless this is a whole table or nothing."""
-        found = super().default_schema(schema)
-        if found.get("default") is None or isinstance(found["default"], dict):
-            found.pop("default", None)
-        return found
-
-
-def schema(scene: type[BaseModel]) -> dict[str, Any]:
-    """Return the JSON Schema of the file of a scene, ready for JSON; of the model of a scene."""
-    found = scene.model_json_schema(schema_generator=_Generator, mode="validation")
-    for part in found["$defs"].values():
-        for name, value in part["properties"].items():
-            if flat := value.pop("x-flat", ""):
-                _flatten(part, name, flat)
-                break
-    found["properties"]["sweep"] = _SWEEP
-    return {"$schema": DIALECT, **_cleaned(found), "title": "Scene of fingerpad"}
-
-
-def _cleaned(part: Any) -> Any:
-    """Return a schema without titles, with the first paragraph of each description as plain text."""
-    if isinstance(part, list):
-        return [_cleaned(each) for each in part]
-    if not isinstance(part, dict):
-        return part
-    found = {key: _cleaned(each) for key, each in part.items() if not (key == "title" and isinstance(each, str))}
-    if isinstance(words := found.get("description"), str):
-        found["description"] = plain_text(words.split("\n\n")[0])
-    return found
-
-
-def _law(key: LawKey) -> JsonSchemaValue:
-    """Return the schema of a law: a table of one of the package or of one's own, or the number that a key takes."""
-    limits = range_of(keys_of(key.default)[key.number]) if key.number else None
-    found = [] if limits is None else [_number(limits)]
-    for name, law in key.kind.laws.items():
-        default = law is type(key.default)
-        own = {each.name: _parameter(law, each) for each in keys_of(law).values()}
-        for table in key.tables(law):
-            own[table.__name__.lower()] = table.model_json_schema(schema_generator=_Generator)
-        left = [each.name for each in keys_of(law).values() if each.default is MISSING]
-        found.append(
-            {
-                "type": "object",
-                "properties": {"law": {"const": name, "description": "Name of the law."}} | own,
-                "additionalProperties": False,
-            }
-            | ({} if default else {"required": ["law", *left]})
-        )
-    own_law = {"type": "string", "pattern": r"^[\w.]+:[\w.]+$", "description": "module:Class on Python's path"}
-    other = {"type": "object", "properties": {"law": own_law}, "required": ["law"]}
-    return {"anyOf": [*found, other]} | ({"x-flat": key.flat} if key.flat else {})
-
-
-def _flatten(part: JsonSchemaValue, law: str, name: str) -> None:
-    """Put the keys of a law into the table around it.
-
-    Args:
-        part: schema of that table.
-        law: key that holds the law.
-        name: key of the law's name.
-    """
-    properties = part.pop("properties")
-    part["anyOf"] = properties.pop(law)["anyOf"]
-    for table in part["anyOf"]:
-        table["properties"] = {name: table["properties"].pop("law")} | table["properties"] | properties
-        if "required" in table:
-            table["required"] = [name, *table["required"][1:]]
-    part.pop("additionalProperties", None)
-
-
-def _parameter(law: type, field: "Field[Any]") -> JsonSchemaValue:
-    limits = range_of(field)
-    words = docstrings(law).get(field.name)
-    return ({} if limits is None else _number(limits)) | ({"description": words} if words else {})
-
-
-def _number(bounds: Range) -> JsonSchemaValue:
-    """Return the schema of a number within its range, or of a text with a unit where the quantity has one."""
-    ranges: list[JsonSchemaValue] = [{"minimum": bounds.low, "maximum": bounds.high}]
-    if bounds.sides == 2:
-        ranges.append({"minimum": -bounds.high, "maximum": -bounds.low})
-    if bounds.zero:
-        ranges.append({"const": 0})
-    number = {"type": "number"} | (ranges[0] if len(ranges) == 1 else {"anyOf": ranges})
-    if not bounds.unit:
-        return number
-    words = f"a number with a unit of {QUANTITIES[bounds.unit]}"
-    text = {"type": "string", "pattern": _NUMBER_AND_UNIT, "description": words}
-    return {"anyOf": [number, text]}

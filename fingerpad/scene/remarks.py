@@ -166,7 +166,7 @@ def finger_in_words(scene: "Scene") -> list[str]:
     finger, other = FINGERS[scene.finger], _changed(scene)
     more = f"; otherwise: {', '.join(other)}" if other else ""
     count = len(finger.values) - len(other)
-    words = f"finger {scene.finger}, {finger.words}: {count} keys by its name (docs/assumptions.md){more}"
+    words = f"finger {scene.finger}, {finger.words}: {count} keys by its name (docs/fingers.md){more}"
     rows = f"its values are fitted to {', '.join(finger.fitted_to)} of data/findings.toml"
     return [words, rows, finger.remark]
 

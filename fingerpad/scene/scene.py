@@ -4,7 +4,6 @@ A number is in SI units, or a text with its unit (:mod:`geometry.units`).
 """
 
 import json
-import math
 from collections.abc import Mapping
 from dataclasses import is_dataclass
 from pathlib import Path
@@ -13,12 +12,13 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, Field, PrivateAttr, ValidationError, model_validator
 
 from fingerpad import notebook
+from fingerpad.scene.controls import FORCE, VOLTAGE, CarriedWaveform
 from fingerpad.scene.drive import Drive, Electric, drive_of, refuse_drives
 from fingerpad.scene.fingers import PAPER, FingerName
 from fingerpad.scene.keys import every
 from fingerpad.scene.law_code import digest, folder_of, imported
 from fingerpad.scene.law_keys import UnresolvedLaw, kept
-from fingerpad.scene.loads import Load, Voltage, drives, refuse_contradictions, repeated
+from fingerpad.scene.loads import Load, drives, refuse_contradictions, repeated
 from fingerpad.scene.materials import (
     BEARING_AREA,
     CLOSURES,
@@ -43,7 +43,6 @@ from fingerpad.scene.parameters import (
 from fingerpad.scene.presets import DEFAULT_HISTORY, changed, preset_keys, with_presets, without
 from fingerpad.scene.reading import flat, plain, put_all, read_scene
 from fingerpad.scene.viscosity import elastic, refuse_beside, viscous_layers
-from fingerpad.scene.waveform import Waveform
 from geometry.parameters import MeshSize
 from geometry.units import Finite, Table, computed, within
 from variational.contact.friction import Friction, law_of
@@ -65,12 +64,12 @@ class Scene(Table):
     one are refused.
     """
 
-    f_ext: Annotated[Finite, within(1e-3, 5e3, "N/m")] = 75.0
+    f_ext: Annotated[Finite, within(FORCE.limits.low, FORCE.limits.high, "N/m")] = 75.0
     """External normal force on the bone (N/m). Range: the weight of a grain of sand to more than 100 N on a finger."""
     force: Annotated[Finite, within(1e-5, 200.0, "N")] | None = None
     """External normal force on the whole finger (N), in place of ``f_ext``. The result is then a sum over slices along
     the finger's axis (``docs/newtons.md``). Range: the weight of a milligram to that of 20 kg."""
-    voltage: Annotated[Voltage, BeforeValidator(repeated)] = 200.0
+    voltage: Annotated[float | CarriedWaveform, VOLTAGE, BeforeValidator(repeated)] = 200.0
     """Instantaneous voltage U (V), or a drive, whose mean attraction over a period acts. *Assumption*: U is that of
     Eq. 3, not the peak-to-peak value of Table 3. Range: from 1 mV, which attracts with less than 1 µPa, to ten times
     the voltage of displays; 0 is no voltage. The sign changes no force."""
@@ -82,7 +81,7 @@ class Scene(Table):
     friction: Annotated[float | Friction, FRICTION] = 0.25
     """Friction coefficient mu_0 of skin on the screen, or a table of a law of friction."""
     finger: FingerName = "paper"
-    """Finger by its name (docs/assumptions.md). A given key wins over the name's. "paper" is the default finger.
+    """Finger by its name (docs/fingers.md). A given key wins over the name's. "paper" is the default finger.
     Its tissue and leak act under a drive; a constant voltage has no losses."""
     geometry: Geometry = Geometry()
     mesh: MeshSize = MeshSize()
@@ -125,8 +124,8 @@ class Scene(Table):
         if self.accuracy is not None:
             self.accuracy.refuse(self.output.receptors, self.friction)
         if self.history is not None:
-            steps = math.inf if self.electric.follows == "mean" else self.numerics.step_scale
-            refuse_contradictions(self.history, given, self.output.errors, steps)
+            steps, follows = self.numerics.step_scale, self.electric.follows
+            refuse_contradictions(self.history, given, self.output.errors, steps, follows)
         if self.force is not None and isinstance(self.friction, Friction) and self.friction.memory is not None:
             raise ValueError(
                 "force is given and friction has a memory, and the sum of slices has no common time; give f_ext or a "
@@ -175,7 +174,7 @@ class Scene(Table):
         """Effective insulator thickness (m)."""
         return self.electric.h_0(self.geometry.sc_thickness)
 
-    def drives(self) -> dict[str, Waveform]:
+    def drives(self) -> dict[str, CarriedWaveform]:
         """Return the drives in place of voltages, by key."""
         return drives(self.voltage, self.history or ())
 

@@ -1,12 +1,12 @@
-"""Voltages over time from a CSV file with heads, as ``time (s),voltage (V)`` or as an oscilloscope writes it.
+"""Values over time from a CSV file with heads, as ``time (s),voltage (V)`` or as an oscilloscope writes it.
 
-Names and units of columns decide (:mod:`fingerpad.scene.tables`): the times are in the first column that is named or
-united as time. Without units they are in s, and the voltages in V. Times may begin anywhere: the first becomes 0.
+Names and units of columns decide (:mod:`fingerpad.scene.tables`): the times are in the first column with a unit of
+time, or with "time" or "t" for a name; the values in the only one with a unit of the control (V, N/m or m), or in the
+only other one. Without units both are in SI. Times may begin anywhere: the first becomes 0.
 
-A file that repeats itself ends where a period does. One of 1.5 periods or more is cut to whole ones, another one must
-end with its first voltage, or one sample before. Where all periods have more than :data:`POINTS` samples, fewer of them
-are kept, one at least. Files of more than :data:`POINTS` samples are averaged in groups, all of as many. Where this
-would take more than :data:`_LOST` of the mean square, as of a carrier, the file is refused.
+A file that repeats itself has whole periods: it ends with its first value, or one sample before. Files of more than
+:data:`POINTS` samples are averaged in groups, all of as many. Where this would take more than :data:`_LOST` of the mean
+square, as of a carrier, the file is refused.
 """
 
 import math
@@ -20,54 +20,45 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fingerpad.scene.messages import clip, show
-from geometry.units import Finite, Range, within
+from geometry.units import QUANTITIES, Finite, Range, within
 
 if TYPE_CHECKING:
     from fingerpad.scene.tables import Column, Table
 
 POINTS = 2000
 """Most points of a waveform."""
-HIGHEST = 5e3
-"""Largest voltage (V)."""
 MEASURES = ("amplitude", "peak_to_peak", "rms")
 """Keys that say how large a wave is; one of them is given, and none of a file."""
-Probe = Annotated[Finite, within(1e-3, 1e5)]
-_SMALLEST = 1e-3  # V; what is less in a table is 0: noise, or roundoff of a computed sine
+PROBES = Range(1e-3, 1e5)
 _LOST = 0.01  # of the mean square
-Volts = Annotated[Finite, within(_SMALLEST, HIGHEST, "V", zero=True, sides=2)]
 Seconds = Annotated[Finite, within(1e-9, 1e5, "s", zero=True)]
 Sample = tuple[float, float]
-"""Time (s) since the start of a load, and voltage (V)."""
+"""Time (s) since the start of a load, and value."""
 Array = NDArray[np.float64]
-_HEADER = "time (s),voltage (V)"
-_TIME = re.compile(r"(time|zeit|temps|tiempo|tempo)\b.*|t|x([-_ ]?(axis|values?))?", re.IGNORECASE)
-_COUNT = re.compile(r"(samples?|ticks?|index|points?|number|no\.?|nr\.?|n|i|row|#|unnamed: \d+)?", re.IGNORECASE)
+_TIME = re.compile(r"time\b.*|t", re.IGNORECASE)
 _CLOSED = 0.02  # of the peak-to-peak value: a difference of the ends that is none
-_ALIKE = 0.05  # of the variance: half the mean square by which periods differ
-_SUDDEN = 0.01  # of the peak: a change of the voltage, within one sample before a piece of a table, that cuts the piece
+_SUDDEN = 0.01  # of the peak: a change of the value, within one sample before a piece of a table, that cuts the piece
 _OWN = 0.5  # of the piece's own change: a smaller change before it cuts no piece
 _TIME_TOLERANCE = 1e-9  # of a piece
 
 
-def or_zero(value: Any) -> Any:
-    """Return a voltage of a table, and 0 for one that is less than a scene can have."""
-    return 0.0 if isinstance(value, float) and abs(value) < _SMALLEST else value
-
-
-def range_of(annotation: Any) -> Range:
-    """Return the range of a key's annotation."""
-    return next(part.func for part in annotation.__metadata__ if isinstance(getattr(part, "func", None), Range))
+def or_zero(value: Any, limits: Range) -> Any:
+    """Return a value of a table, and 0 for one that is less than a scene can have: noise, or roundoff of a sine."""
+    return 0.0 if isinstance(value, float) and abs(value) < limits.low else value
 
 
 # -- reading -----------------------------------------------------------------------------------------------------
-def table(file: str, column: str | None = None, probe: float = 1.0, *, repeat: bool = False) -> dict[str, Any]:
-    """Return times (s) and voltages (V) of a CSV file.
+def table(
+    file: str, limits: Range, column: str | None = None, probe: float = 1.0, *, repeat: bool = False
+) -> dict[str, Any]:
+    """Return times (s) and values of a CSV file.
 
     Args:
         file: its path.
-        column: name of the voltages' column, with its unit as written there or without; None where there is one alone.
-        probe: factor on the voltages.
-        repeat: whether the file repeats itself, so that it must end where a period does.
+        limits: values that are allowed, with their unit.
+        column: name of the values' column, with its unit as written there or without; None where there is one alone.
+        probe: factor on the values.
+        repeat: whether the file repeats itself, so that it must have whole periods.
 
     Raises:
         ValueError: it cannot be read, or has no such column, another unit, or a line without numbers in range; in one
@@ -75,99 +66,68 @@ def table(file: str, column: str | None = None, probe: float = 1.0, *, repeat: b
     """
     from fingerpad.scene import tables  # pandas
 
-    name = f"file is {show(file)}"
+    name, unit, header = f"file is {show(file)}", limits.unit, f"time (s),{QUANTITIES[limits.unit]} ({limits.unit})"
     try:
-        found = tables.read(file, _HEADER)
-        sides = zip(_columns(found, column), (("s", "horizontal units"), ("V", "vertical units")), strict=True)
+        found = tables.read(file, header)
+        columns = _columns(found, column, unit, header)
+        sides = zip(columns, (("s", "horizontal units"), (unit, "vertical units")), strict=True)
         t, u = (
             replace(each, unit=each.unit or found.facts.get(side, si)).numbers(si).to_numpy()
             for each, (si, side) in sides
         )
         t, u = t - t[0], probe * u
         if repeat and len(t) > 1 and (np.diff(t) > 0).all():
-            t, u = _whole(t, u)
+            t, u = _closed(t, u, unit)
         t, u = _fewer(t, u)
     except ValueError as error:
         raise ValueError(f"{name}, which {error}") from None
-    allowed = range_of(Volts)
-    wrong = next((k for k, value in enumerate(u) if or_zero(float(value)) not in allowed), None)
+    values = [or_zero(float(value), limits) for value in u]
+    wrong = next((k for k, value in enumerate(values) if value not in limits), None)
     if wrong is not None:
-        words = allowed.words(float(u[wrong])).partition(" (")[0]
+        words = limits.words(float(u[wrong])).partition(" (")[0]
         raise ValueError(f"{name}, which at {t[wrong]:.6g} s has a number that {words}")
-    if np.abs(u).max() < _SMALLEST:
-        raise ValueError(f"{name}, which has 0 V throughout; give a voltage, or the number 0 in its place")
-    return {"times": t.tolist(), "voltages": [or_zero(float(value)) for value in u]}
+    if not any(values):
+        raise ValueError(f"{name}, which has 0 {unit} throughout; give other values, or the number 0 in its place")
+    return {"times": t.tolist(), "values": values}
 
 
-def _columns(found: "Table", wanted: str | None) -> "tuple[Column, Column]":
-    """Return the columns of the times and of the voltages, the latter by its name or as the one in volts."""
+def _columns(found: "Table", wanted: str | None, unit: str, header: str) -> "tuple[Column, Column]":
+    """Return the columns of the times and of the values, the latter by its name or as the one in the unit."""
     from fingerpad.scene.tables import is_of
 
     columns = [each for each in found.columns if each.numeric]
     if len(columns) < 2 or not found.headed:
-        raise ValueError(f"has no two columns of numbers with heads; write '{_HEADER}' above them")
+        raise ValueError(f"has no two columns of numbers with heads; write '{header}' above them")
     among = clip(" or ".join(show(each.head) for each in columns), 100)
-    named = [each for each in columns if _TIME.fullmatch(each.name)]
     united = [each for each in columns if is_of(each.unit, "s")]
-    times = [each for each in named if each in united] or united or named
+    times = united or [each for each in columns if _TIME.fullmatch(each.name)]
     if not times:
         raise ValueError(f"has nothing named or united as time among {among}; write a head such as 'time (s)'")
-    others = [each for each in columns if each not in times and (each.unit or not _COUNT.fullmatch(each.name))]
+    others = [each for each in columns if each not in times]
     if not others:
-        raise ValueError("has nothing in V beside its time")
-    volts = [each for each in others if is_of(each.unit or "V", "V")] or others
+        raise ValueError(f"has nothing in {unit} beside its time")
+    values = [each for each in others if is_of(each.unit, unit)] or others
     if wanted is not None:
         name = wanted.strip().casefold()
         heads, names = ([each for each in others if getattr(each, key).casefold() == name] for key in ("head", "name"))
-        volts = heads or names
-    if len(volts) != 1:
+        values = heads or names
+    if len(values) != 1:
         given = "not given" if wanted is None else show(wanted)
-        raise ValueError(f"has {among}, and column is {given}; it must be one of these, that of the voltages")
-    return times[0], volts[0]
+        raise ValueError(f"has {among}, and column is {given}; it must be one of these")
+    return times[0], values[0]
 
 
-def _whole(t: Array, u: Array) -> tuple[Array, Array]:
-    """Return a record of whole periods: one that is cut, or goes on for a sample with its first voltage."""
-    steps, period, apart, end = np.diff(t), _period(t, u), abs(u[-1] - u[0]), t[-1]
-    if period is not None:
-        count = math.floor((t[-1] + 1.5 * steps.min()) / period)
-        end = max(1, min(count, math.floor(count * (POINTS - 1) / len(t)))) * period  # as many as need no means
-        end = t[-1] if abs(end - t[-1]) < 0.25 * steps.min() else end
-    elif steps.max() < 1.01 * steps.min() and _CLOSED * np.ptp(u) < apart <= 1.01 * np.abs(np.diff(u)).max():
-        end = t[-1] + steps[-1]
-    elif apart > _CLOSED * np.ptp(u):
-        raise ValueError(
-            f"begins with {u[0]:.4g} V and ends with {u[-1]:.4g} V after {t[-1]:.4g} s, without whole "
-            "periods; it repeats itself, so it must end with its first voltage"
-        )
-    kept = t < end - 0.25 * steps.min()
-    return np.append(t[kept], end), np.append(u[kept], np.interp(end, t, u, right=u[0] if end > t[-1] else u[-1]))
-
-
-def _period(t: Array, u: Array) -> float | None:
-    """Return the period (s) of a record of 1.5 periods or more, None of another one.
-
-    It is the least delay, past the first lobe, at which the record hardly differs from itself and varies; of several
-    periods a part of the delay over all of them, at which it differs least.
-    """
-    import scipy.optimize
-    import scipy.signal
-
-    v = np.interp(np.linspace(0.0, t[-1], POINTS), t, u)
-    apart = np.array([np.mean((v[k:] - v[:-k]) ** 2) for k in range(1, 2 * POINTS // 3)])
-    near = 1 + scipy.signal.find_peaks(-apart, height=-2 * _ALIKE * v.var())[0]
-    near = near[near > 1 + np.argmax(apart > v.var())]
-    found = [int(k) for k in near if min(v[k:].var(), v[:-k].var()) > v.var() / 4]
-    if not found:
-        return None
-    count, step = round(found[-1] / found[0]), t[-1] / (POINTS - 1)
-
-    def differ(delay: float) -> float:
-        early = t[t <= t[-1] - delay]
-        return float(np.mean((np.interp(early + delay, t, u) - u[: len(early)]) ** 2))
-
-    ends = (found[-1] - 1) * step, min((found[-1] + 1) * step, t[-1] - step)
-    return float(scipy.optimize.minimize_scalar(differ, bounds=ends, method="bounded").x) / count
+def _closed(t: Array, u: Array, unit: str) -> tuple[Array, Array]:
+    """Return a record that ends with its first value; one that does so a sample later goes on for that sample."""
+    steps, apart = np.diff(t), abs(u[-1] - u[0])
+    if apart <= _CLOSED * np.ptp(u):
+        return t, u
+    if steps.max() < 1.01 * steps.min() and apart <= 1.01 * np.abs(np.diff(u)).max():
+        return np.append(t, t[-1] + steps[-1]), np.append(u, u[0])
+    raise ValueError(
+        f"begins with {u[0]:.4g} {unit} and ends with {u[-1]:.4g} {unit} after {t[-1]:.4g} s; it repeats itself, so "
+        "cut it to whole periods, which end with their first value"
+    )
 
 
 def _fewer(t: Array, u: Array) -> tuple[Array, Array]:
@@ -196,15 +156,15 @@ def refuse_table(wave: Any) -> None:
     Raises:
         ValueError: in one sentence, with the waveform's keys.
     """
-    times, voltages, carrier = wave.times, wave.voltages, wave.carrier
+    times, values = wave.times, wave.values
     for name in (*MEASURES, "frequency", "offset", "burst"):
         if name in wave.model_fields_set and getattr(wave, name) not in (None, 0.0):
             given = "given" if name == "burst" else show(getattr(wave, name))
             raise ValueError(f"{name} is {given} and waveform is 'file', which has none")
-    if times is None or voltages is None:
+    if times is None or values is None:
         raise ValueError("file is missing; waveform is 'file' and needs it")
-    if len(times) != len(voltages):
-        raise ValueError(f"times are {len(times)} and voltages are {len(voltages)}; give as many of each")
+    if len(times) != len(values):
+        raise ValueError(f"times are {len(times)} and values are {len(values)}; give as many of each")
     if not 2 <= len(times) <= POINTS:
         raise ValueError(f"times are {len(times)}; there must be from 2 to {POINTS} of them")
     if times[0] != 0:
@@ -215,51 +175,38 @@ def refuse_table(wave: Any) -> None:
                 f"times are {show(before)} and then {show(after)} s; each must be later than the one before, so give a "
                 "jump a short time"
             )
-    if carrier is None:
-        return
-    if carrier.modulation is not None:
-        raise ValueError(
-            f"carrier.modulation is {show(carrier.modulation)} and waveform is 'file', whose voltages have their "
-            "carrier in them; leave it out"
-        )
-    step = max(after - before for before, after in pairwise(times))
-    if step * carrier.frequency > 0.5:
-        raise ValueError(
-            f"carrier.frequency is {show(carrier.frequency)} Hz and the file has times {step:.4g} s apart; they "
-            f"must be at most {0.5 / carrier.frequency:.4g} s apart, two in a period (Nyquist)"
-        )
 
 
-def refined(times: Sequence[float], voltages: Sequence[float], most: float, behind: int) -> Iterator[Sample]:
+def refined(times: Sequence[float], values: Sequence[float], most: float, behind: int) -> Iterator[Sample]:
     """Yield the points of a table, the zeros between them, and more within its pieces.
 
     Args:
         times: of the table (s).
-        voltages: of the table (V).
-        most: change of the voltage between two samples (V).
+        values: of the table.
+        most: change of the value between two samples.
         behind: samples of a piece behind a sudden change, and of the first piece.
     """
-    least = _SUDDEN * max(map(abs, voltages))
-    yield times[0], voltages[0]
+    least = _SUDDEN * max(map(abs, values))
+    yield times[0], values[0]
     for k in range(1, len(times)):
-        (t0, t1), (u0, u1) = times[k - 1 : k + 1], voltages[k - 1 : k + 1]
-        before = _change_before(times, voltages, k - 1, (t1 - t0) / behind)
+        (t0, t1), (u0, u1) = times[k - 1 : k + 1], values[k - 1 : k + 1]
+        before = _change_before(times, values, k - 1, (t1 - t0) / behind)
         even = behind if k == 1 or before > max(least, _OWN * abs(u1 - u0)) else 1
         zero = [(t0 + (t1 - t0) * u0 / (u0 - u1), 0.0)] if u0 * u1 < 0 else []
         for (a, ua), (b, ub) in pairwise([(t0, u0), *zero, (t1, u1)]):
             by_time = math.ceil(even * (b - a) / (t1 - t0) - _TIME_TOLERANCE)
-            by_voltage = math.ceil(abs(ub - ua) / most - _TIME_TOLERANCE) if most > 0 else 1
-            pieces = max(by_time, by_voltage, 1)
+            by_value = math.ceil(abs(ub - ua) / most - _TIME_TOLERANCE) if most > 0 else 1
+            pieces = max(by_time, by_value, 1)
             for j in range(1, pieces):
                 yield a + (b - a) * j / pieces, ua + (ub - ua) * j / pieces
             yield b, ub
 
 
-def _change_before(times: Sequence[float], voltages: Sequence[float], k: int, seconds: float) -> float:
-    """Return by how much the voltage of a table changes in some seconds before its point k."""
-    first, seen = times[k] - seconds, [voltages[k]]
+def _change_before(times: Sequence[float], values: Sequence[float], k: int, seconds: float) -> float:
+    """Return by how much the value of a table changes in some seconds before its point k."""
+    first, seen = times[k] - seconds, [values[k]]
     while k > 0 and times[k] > first:
         k -= 1
         part = min((times[k + 1] - first) / (times[k + 1] - times[k]), 1.0)
-        seen.append(voltages[k + 1] + part * (voltages[k] - voltages[k + 1]))
+        seen.append(values[k + 1] + part * (values[k] - values[k + 1]))
     return max(seen) - min(seen)

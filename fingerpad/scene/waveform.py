@@ -1,60 +1,44 @@
-r"""A voltage over time: sine, square, triangle or a table of a file, with the samples at which it is solved for.
+r"""A force, height, place or voltage over time: sine, square, triangle or a table of a file, with its samples.
 
-.. math:: U(t) = U_0 + \hat U \, w(f t), \quad w = \sin 2 \pi f t \text{ or the square or triangle of its phase}
+.. math:: q(t) = q_0 + \hat q \, w(f t), \quad w = \sin 2 \pi f t \text{ or the square or triangle of its phase}
 
-Time starts with the load. With a carrier the wave is the envelope of a sine of higher frequency, with the depth m of
-``modulation``, so that the amplitude is that of the peak:
+The unit of q is that of the control of a load (:mod:`fingerpad.scene.controls`), and time starts with the load. A burst
+is a number of whole periods of the wave, and a pause at the offset.
 
-.. math:: U(t) = U_0 + \hat U \, \frac{1 + m \, w(f t)}{1 + m} \sin 2 \pi f_c t
-
-A burst is a number of whole periods of the wave, and a pause at the offset.
-
-Turning points, jumps and zeros are always among the samples. A period has 24 of them: friction has twice the frequency
-of the voltage, so that 12 are in each of its periods. The square of a sine is off straight lines between the samples by
-1.7 % of the peak at most. A table's pieces are cut where the voltage changes by as much. A piece behind a sudden change
-of the voltage, and the first one, has the 12 samples of half a square's period: there friction goes on to change at a
-constant voltage, as the finger slides. Fewer or more samples follow from ``numerics.step_scale``.
+Turning points, jumps and zeros are always among the samples, at which the load is solved for. A period has 24 of them:
+under a voltage friction has twice its frequency, so that 12 are in each of its periods. The square of a sine is off
+straight lines between the samples by 1.7 % of the peak at most. A table's pieces are cut where the value changes by as
+much. A piece behind a sudden change, and the first one, has the 12 samples of half a square's period: there friction
+goes on to change at a constant value, as the finger slides. Fewer or more samples follow from ``numerics.step_scale``.
 """
 
 import math
 from collections.abc import Iterator
 from itertools import count
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from annotated_types import Ge, Le
 from numpy.typing import ArrayLike, NDArray
-from pydantic import BeforeValidator, Field, Strict, model_validator
+from pydantic import BeforeValidator, Field, Strict, WrapValidator, model_validator
 
 from fingerpad.scene.messages import show
-from fingerpad.scene.wavefile import (
-    HIGHEST,
-    MEASURES,
-    Probe,
-    Sample,
-    Seconds,
-    Volts,
-    or_zero,
-    range_of,
-    refined,
-    refuse_table,
-    table,
-)
-from geometry.units import Finite, Switch, Table, within
+from fingerpad.scene.wavefile import MEASURES, PROBES, Sample, Seconds, or_zero, refined, refuse_table, table
+from geometry.units import Finite, Range, Switch, Table, within
 
 SAMPLES = 24
 """Samples of a period at ``numerics.step_scale`` 1."""
 MOST = 10_000
 """Most samples of a load."""
-_MOST_CARRIED = 2000.0  # periods of a carrier in one of the wave and its burst
 _SQUARE_MEAN = {"sine": 0.5, "square": 1.0, "triangle": 1 / 3}  # of each wave of amplitude 1
-_HIGHEST_FREQUENCY = 1e6  # Hz
+Frequency = Annotated[Finite, within(1e-3, 1e6, "Hz")]
+IN_WORDS = {"m": (1e3, "mm"), "m/s": (1e3, "mm/s")}
+"""Factor from an SI unit to that of words, and the latter, where the two differ."""
 _TIME_TOLERANCE = 1e-9  # of a period: two times that are one
 _ROUNDOFF = 1e-12  # of the peak
 _Count = Annotated[int, Strict(), Ge(1), Le(500)]
-_Tabled = Annotated[Volts, BeforeValidator(or_zero)]
-# Behind a validator that reads a file, strict rules no longer take a list for a tuple.
-_LISTED = BeforeValidator(lambda value: tuple(value) if isinstance(value, list) else value)
+LISTED = BeforeValidator(lambda value: tuple(value) if isinstance(value, list) else value)
+"""Behind a validator that reads a file, strict rules no longer take a list for a tuple."""
 _OF_FILE = ("file", "column", "probe")  # keys of a file, of which a scene keeps the points alone
 
 
@@ -72,22 +56,6 @@ def shape(waveform: str, part: ArrayLike, parts: float = 1.0) -> NDArray[np.floa
     return np.where(quarter % 4 < 2, size, -size)
 
 
-class Carrier(Table):
-    """A sine of higher frequency, of which the wave is the envelope."""
-
-    frequency: Annotated[Finite, within(1e-3, _HIGHEST_FREQUENCY, "Hz")]
-    """Frequency of the carrier (Hz), above that of the wave. It is taken at the nearest multiple of the frequency with
-    which the drive repeats itself."""
-    modulation: Annotated[Finite, within(1e-3, 1)] | None = None
-    """Depth m of the modulation, from none to 1, the default: an envelope that closes. Not for a file, whose voltages
-    have their carrier in them."""
-
-    @property
-    def depth(self) -> float:
-        """Depth m of the modulation."""
-        return self.modulation or 1.0
-
-
 class Burst(Table):
     """Whole periods of the wave, and a pause at the offset."""
 
@@ -98,54 +66,58 @@ class Burst(Table):
 
 
 class Waveform(Table):
-    """A voltage over time, in place of a number; see :mod:`fingerpad.scene.waveform`."""
+    """A value over time, in place of a number; see :mod:`fingerpad.scene.waveform`."""
 
+    limits: ClassVar[Range]
+    """Values that the control can have."""
     waveform: Literal["sine", "square", "triangle", "file"]
     """Shape. Sine and triangle start at the offset and rise, a square starts at its upper value; a file has any."""
-    amplitude: Annotated[Finite, within(1e-3, HIGHEST, "V")] | None = None
-    """Amplitude (V): half of the peak-to-peak value. One of amplitude, peak_to_peak and rms is required but for a
-    file."""
-    peak_to_peak: Annotated[Finite, within(1e-3, 2 * HIGHEST, "V")] | None = None
-    """Peak-to-peak value (V), in place of the amplitude."""
-    rms: Annotated[Finite, within(1e-3, HIGHEST, "V")] | None = None
-    """Root mean square (V) of the alternating part, without offset and pauses, in place of the amplitude."""
-    frequency: Annotated[Finite, within(1e-3, _HIGHEST_FREQUENCY, "Hz")] | None = None
+    amplitude: Finite | None = None
+    """Amplitude: half of the peak-to-peak value. One of amplitude, peak_to_peak and rms is required but for a file."""
+    peak_to_peak: Finite | None = None
+    """Peak-to-peak value, in place of the amplitude."""
+    rms: Finite | None = None
+    """Root mean square of the alternating part, without offset and pauses, in place of the amplitude."""
+    frequency: Frequency | None = None
     """Frequency (Hz). Required but for a file. Range: a period of a quarter of an hour to a radio wave."""
-    offset: Volts = 0.0
-    """Direct voltage (V) to which the wave is added, of either sign."""
-    carrier: Carrier | None = None
-    """A sine of higher frequency, of which the wave is the envelope; see :mod:`fingerpad.scene.waveform`."""
+    offset: Finite = 0.0
+    """Constant value to which the wave is added."""
     burst: Burst | None = None
     """Whole periods of the wave, and a pause at the offset."""
     file: Annotated[str | None, Field(exclude=True)] = None
-    """CSV file with the header ``time (s),voltage (V)``, or of an oscilloscope (:mod:`fingerpad.scene.wavefile`),
-    straight between its points; a relative path starts at the scene file. The times increase, and the first counts as
-    0. A file that repeats itself is cut to whole periods. It is read at once: a scene stores only its points."""
+    """CSV file with a header such as ``time (s),voltage (V)``, or of an oscilloscope
+    (:mod:`fingerpad.scene.wavefile`), straight between its points; a relative path starts at the scene file. The times
+    increase, and the first counts as 0. A file that repeats itself is cut to whole periods. It is read at once: a scene
+    stores only its points."""
     column: Annotated[str | None, Field(exclude=True, max_length=100)] = None
-    """Name of the column of voltages in a file with several, as ``CH1`` or ``CH1 (V)``."""
-    probe: Annotated[Probe | None, Field(exclude=True)] = None
-    """Factor on the voltages of a file, 1 by default; 100 for a channel without the factor of its 1:100 probe."""
+    """Name of the column of values in a file with several, as ``CH1`` or ``CH1 (V)``."""
+    probe: Annotated[Annotated[Finite, WrapValidator(PROBES)] | None, Field(exclude=True)] = None
+    """Factor on the values of a file, 1 by default; 100 for a channel without the factor of its 1:100 probe."""
     repeat: Switch = False
     """Whether a file's points repeat themselves for as long as a load takes, as the other waveforms do."""
-    times: Annotated[tuple[Seconds, ...], _LISTED] | None = None
+    times: Annotated[tuple[Seconds, ...], LISTED] | None = None
     """Times (s) of a file's points, or in place of a file."""
-    voltages: Annotated[tuple[_Tabled, ...], _LISTED] | None = None
-    """Voltages (V) at these times; below 1 mV they are 0."""
+    values: Annotated[tuple[Finite, ...], LISTED] | None = None
+    """Values at these times; what is smaller than any value allowed is 0."""
 
     @model_validator(mode="before")
     @classmethod
     def _read(cls, data: Any) -> Any:
-        if not isinstance(data, dict) or not isinstance(data.get("file"), str) or data.get("waveform") != "file":
+        if not isinstance(data, dict) or data.get("waveform") != "file":
+            return data
+        if isinstance(data.get("values"), list | tuple):
+            data = data | {"values": tuple(or_zero(value, cls.limits) for value in data["values"])}
+        if not isinstance(data.get("file"), str):
             return data
         column, probe = data.get("column"), data.get("probe")
         factor = 1.0 if probe is None else probe
-        if not isinstance(column, str | None) or type(factor) not in (int, float) or factor not in range_of(Probe):
+        if not isinstance(column, str | None) or type(factor) not in (int, float) or factor not in PROBES:
             return data  # for the checks of these keys
-        for name in ("times", "voltages"):
+        for name in ("times", "values"):
             if data.get(name) is not None:
                 raise ValueError(f"{name} and file are both given; give the file alone, which has them")
         rest = {key: value for key, value in data.items() if key not in _OF_FILE}
-        return rest | table(data["file"], column, factor, repeat=data.get("repeat") is True)
+        return rest | table(data["file"], cls.limits, column, factor, repeat=data.get("repeat") is True)
 
     @model_validator(mode="after")
     def _consistent(self) -> "Waveform":
@@ -161,7 +133,7 @@ class Waveform(Table):
     def _refuse_wave(self) -> None:
         if self.repeat:
             raise ValueError(f"repeat is true and waveform is {show(self.waveform)}, which always is so; leave it out")
-        for name in ("file", "times", "voltages"):
+        for name in ("file", "times", "values"):
             if getattr(self, name) is not None:
                 raise ValueError(f"{name} is given and waveform is {show(self.waveform)}; it must be 'file'")
         given = [name for name in MEASURES if getattr(self, name) is not None]
@@ -171,19 +143,12 @@ class Waveform(Table):
         if not given or self.frequency is None:
             what, instead = ("frequency", "") if given else ("amplitude", ", or peak_to_peak or rms in its place")
             raise ValueError(f"{what} is missing; waveform is {show(self.waveform)} and needs it{instead}")
-        if self.peak > HIGHEST:
-            raise ValueError(
-                f"offset is {show(self.offset)} and {given[0]} is {show(getattr(self, given[0]))}, together "
-                f"{self.peak:g} V; they must reach at most {HIGHEST:g} V"
-            )
-        if self.carrier is None:
-            return
-        if self.carrier.frequency <= self.frequency:
-            both = f"carrier.frequency is {show(self.carrier.frequency)} Hz and frequency is {show(self.frequency)} Hz"
-            raise ValueError(f"{both}; the carrier must have the higher one")
-        if (periods := self.carrier.frequency * self.period) > _MOST_CARRIED:
-            words = f"carrier.frequency is {show(self.carrier.frequency)} Hz, {periods:.4g} periods in one of the drive"
-            raise ValueError(f"{words}; there must be at most {_MOST_CARRIED:g}")
+        most, unit = self.limits, self.limits.unit
+        reach = f"offset is {show(self.offset)} and {given[0]} is {show(getattr(self, given[0]))}, together"
+        if self.peak > most.high:
+            raise ValueError(f"{reach} {self.peak:g} {unit}; they must reach at most {most.high:g} {unit}")
+        if most.sides == 1 and self.ends[0] < -_ROUNDOFF * self.peak:
+            raise ValueError(f"{reach} down to {self.ends[0]:g} {unit}; they must not go below 0")
 
     # -- what it is --------------------------------------------------------------------------------------
     @property
@@ -195,13 +160,14 @@ class Waveform(Table):
 
     @property
     def height(self) -> float:
-        """Amplitude (V), by whichever measure it is given; 0 of a file."""
+        """Amplitude, by whichever measure it is given; 0 of a file."""
         if self.rms is None:
             return self.amplitude or (self.peak_to_peak or 0.0) / 2
-        mean = _SQUARE_MEAN[self.waveform]
-        if self.carrier is not None:
-            mean = (1 + self.carrier.depth**2 * mean) / (1 + self.carrier.depth) ** 2 / 2
-        return self.rms / math.sqrt(mean)
+        return self.rms / math.sqrt(self._square_mean())
+
+    def _square_mean(self) -> float:
+        """Return the mean square of the wave at amplitude 1."""
+        return _SQUARE_MEAN[self.waveform]
 
     @property
     def end(self) -> float:
@@ -209,52 +175,62 @@ class Waveform(Table):
         return math.inf if self.times is None or self.repeat else self.times[-1]
 
     @property
+    def ends(self) -> tuple[float, float]:
+        """Smallest and largest value."""
+        found = self.values or (self.offset - self.height, self.offset + self.height)
+        return min(found), max(found)
+
+    @property
     def peak(self) -> float:
-        """Largest amount of the voltage (V)."""
-        return max(map(abs, self.voltages)) if self.voltages else abs(self.offset) + self.height
+        """Largest amount of the value."""
+        return max(map(abs, self.ends))
 
     @property
     def mean(self) -> float:
-        """Mean voltage (V) of a period; of a file over its length."""
-        if self.times is None or self.voltages is None:
+        """Mean of a period; of a file over its length."""
+        if self.times is None or self.values is None:
             return self.offset
-        return float(np.trapezoid(self.voltages, self.times)) / self.times[-1]
+        return float(np.trapezoid(self.values, self.times)) / self.times[-1]
 
     def __str__(self) -> str:
         """Return the wave in words."""
+        factor, unit = IN_WORDS.get(self.limits.unit, (1.0, self.limits.unit))
         if self.times is not None:
-            repeated = ", repeated" if self.repeat else ""
-            return f"by a table of {len(self.times)} points over {self.times[-1]:g} s, up to {self.peak:g} V{repeated}"
-        offset = f" about {self.offset:g} V" if self.offset else ""
+            end, repeated = f"{factor * self.peak:g} {unit}", ", repeated" if self.repeat else ""
+            return f"by a table of {len(self.times)} points over {self.times[-1]:g} s, up to {end}{repeated}"
+        offset = f" about {factor * self.offset:g} {unit}" if self.offset else ""
         measure = next(name for name in MEASURES if getattr(self, name) is not None)
         how = f" {measure.replace('_', ' ')}".removesuffix(" amplitude")
-        found = f"{self.waveform} of {getattr(self, measure):g} V{how}{offset} at {self.frequency:g} Hz"
-        found += "" if self.carrier is None else f" on a carrier of {self.carrier.frequency:g} Hz"
+        found = f"{self.waveform} of {factor * getattr(self, measure):g} {unit}{how}{offset} at {self.frequency:g} Hz"
+        found += self._carried_in_words()
         return found + ("" if self.burst is None else f", {self.burst.on} periods on and {self.burst.off} off")
+
+    def _carried_in_words(self) -> str:
+        return ""
 
     # -- values ------------------------------------------------------------------------------------------
     def at(self, part: ArrayLike, parts: float | None = None) -> NDArray[np.float64]:
-        """Return the voltage (V) at times from the start on, of their shape; at a jump that behind it.
+        """Return the value at times from the start on, of their shape; at a jump that behind it.
 
         Args:
             part: times, in parts of the period; in seconds without ``parts``.
             parts: of a period; whole numbers of both give the same values in each quarter, to the last bit.
         """
         parts = parts or self.period
-        if self.times is not None and self.voltages is not None:
-            return np.asarray(np.interp(np.asarray(part) / parts * self.period, self.times, self.voltages))
+        if self.times is not None and self.values is not None:
+            return np.asarray(np.interp(np.asarray(part) / parts * self.period, self.times, self.values))
         phase = np.asarray(part) * round(self.period * (self.frequency or 1.0))  # in parts of the wave's own period
-        found = shape(self.waveform, phase, parts)
-        if self.carrier is not None:
-            carried = np.asarray(part) * round(self.carrier.frequency * self.period)
-            found = (1 + self.carrier.depth * found) / (1 + self.carrier.depth) * shape("sine", carried, parts)
+        found = self._carried(shape(self.waveform, phase, parts), np.asarray(part), parts)
         if self.burst is not None:
             found = np.where(phase < self.burst.on * parts, found, 0.0)
         return np.asarray(self.offset + self.height * found)
 
+    def _carried(self, found: NDArray[np.float64], part: NDArray[np.float64], parts: float) -> NDArray[np.float64]:
+        return found
+
     # -- samples -----------------------------------------------------------------------------------------
     def count(self, seconds: float, step_scale: float) -> float:
-        """Return how many samples a load of some seconds has; zeros of a periodic voltage come on top."""
+        """Return how many samples a load of some seconds has; zeros of a periodic wave come on top."""
         if math.isinf(step_scale):
             return 0.0
         if self.times is not None:
@@ -263,9 +239,9 @@ class Waveform(Table):
         return seconds * (self.frequency or math.nan) * _per_period(step_scale)
 
     def samples(self, seconds: float, step_scale: float) -> list[Sample]:
-        """Return times and voltages to go to one after the other, the first at time 0.
+        """Return times and values to go to one after the other, the first at time 0.
 
-        Two samples of one time are a jump. The voltage does not change its sign between two others.
+        Two samples of one time are a jump. The value does not change its sign between two others.
 
         Args:
             seconds: length of the load (s).
@@ -285,7 +261,7 @@ class Waveform(Table):
         return found
 
     def between(self, before: Sample, after: Sample, time: float) -> float:
-        """Return the voltage (V) at a time (s) between two samples, one next to the other."""
+        """Return the value at a time (s) between two samples, one next to the other."""
         (t0, u0), (t1, u1) = before, after
         if self.waveform != "sine" or self._in_pause(time):
             return u0 + min((time - t0) / (t1 - t0), 1.0) * (u1 - u0)
@@ -296,7 +272,7 @@ class Waveform(Table):
         return self.burst is not None and phase > self.burst.on * (1 + _TIME_TOLERANCE)
 
     def corners(self, seconds: float) -> list[float]:
-        """Return the times (s) at which the voltage bends sharply, up to some seconds; jumps are not among them."""
+        """Return the times (s) at which the value bends sharply, up to some seconds; jumps are not among them."""
         if self.times is not None:
             periods = math.ceil(seconds / self.period) if self.repeat else 1
             found = (k * self.period + time for k in range(periods) for time in self.times)
@@ -307,14 +283,14 @@ class Waveform(Table):
         return [t for k in range(math.ceil(seconds / half)) if not self._in_pause(t := (k + 0.5) * half)]
 
     def _wave(self, part: float, parts: float = 1.0) -> float:
-        """Return the voltage (V) of the wave without its carrier, at a part of its own period."""
+        """Return the value of the wave without a carrier, at a part of its own period."""
         value = self.offset + self.height * float(shape(self.waveform, part, parts))
         return 0.0 if abs(value) < _ROUNDOFF * self.peak else value
 
     def _points(self, n: int) -> Iterator[tuple[float, ...]]:
-        """Yield a time and the voltage there, before and after a jump, without end but for a file."""
-        if self.times is not None and self.voltages is not None:
-            table = [*refined(self.times, self.voltages, 2 * math.pi / n * self.peak, n // 2)]
+        """Yield a time and the value there, before and after a jump, without end but for a file."""
+        if self.times is not None and self.values is not None:
+            table = [*refined(self.times, self.values, 2 * math.pi / n * self.peak, n // 2)]
             yield table[0]
             for period in count() if self.repeat else range(1):
                 yield from ((period * self.period + time, value) for time, value in table[1:-1])
@@ -331,7 +307,7 @@ class Waveform(Table):
             yield from (((k * periods + phase) / (self.frequency or math.nan), *values) for phase, *values in one)
 
     def _one_period(self, n: int) -> list[tuple[float, ...]]:
-        """Return phases from 0 to below 1 and the voltages there."""
+        """Return phases from 0 to below 1 and the values there."""
         values = [self._wave(k, n) for k in range(n)]
         if self.waveform == "square":
             return [(k / n, *([values[k - 1]] if k in (0, n // 2) else []), values[k]) for k in range(n)]

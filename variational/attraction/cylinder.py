@@ -22,13 +22,13 @@ surfaces are under that pressure (Forsbach et al. 2023, Eqs. 3, 4 and 13):
 Without voltage this is Hertz's law. A tip that is no cylinder (:mod:`~variational.attraction.tip`) has its own force
 and gap in the place of those with R. The force f is given, and a follows from the second equation. E* may grow with
 p_c, as in a ridge that friction shears. The gap at c grows with m then, which leaves one m at each p_c, and one
-equation in p_c. It can have several roots: that of the highest pressure is the branch in contact, on which the loop over the
-scales contracts; others are unstable, or states of a ridge that has not jumped on the screen yet. Where the highest
-root vanishes the ridge is past its pull-off fold and there is none.
+equation in p_c. It can have several roots: that of the highest pressure is the branch in contact, on which the loop
+over the scales contracts; others are unstable, or states of a ridge that has not jumped on the screen yet. Where the
+highest root vanishes the ridge is past its pull-off fold and there is none.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
@@ -82,10 +82,14 @@ class _Loads:
     """External force per length (N/m)."""
     modulus: Array
     """Of each ridge (Pa)."""
+    h_0: Array
+    """Effective insulator thickness (m)."""
+    number: NDArray[np.intp]
+    """Place among the loads."""
     tip: Tip
 
     def __getitem__(self, chosen: NDArray[np.intp]) -> "_Loads":
-        return _Loads(self.f[chosen], self.modulus[chosen], self.tip[chosen])
+        return _Loads(*(getattr(self, each.name)[chosen] for each in fields(self)))
 
 
 @dataclass(frozen=True)
@@ -96,12 +100,13 @@ class Cylinder:
     """Its shape; where it differs from load to load its arrays have the shape (loads,)."""
     modulus: float | Array
     """Plane strain modulus E* (Pa): of all loads, or of each, shape (loads,)."""
-    h_0: float
-    """Effective insulator thickness (m)."""
-    closure: Closure
-    """The microscale."""
-    stiffening: Callable[[Any], Array] | None = None
-    """What the modulus gains (Pa) at mean contact pressures (Pa); None where it is constant."""
+    h_0: float | Array
+    """Effective insulator thickness (m), of all loads or of each."""
+    closure: Closure | Sequence[Closure]
+    """The microscale, of all loads or of each."""
+    stiffening: Callable[..., Array] | None = None
+    """What the modulus gains (Pa) at mean contact pressures (Pa); None where it is constant. Where each load has a
+    closure of its own, it takes the numbers of the loads as a second argument, in the shape of the pressures."""
 
     def under_loads(self, f: ArrayLike, voltage: Voltage) -> list[RidgeState]:
         """Return the state under each of several external forces.
@@ -117,7 +122,8 @@ class Cylinder:
         f = np.asarray(f, dtype=float)
         if not np.all(f > 0):
             raise NoEquilibriumError(f"the force on a ridge is {f[~(f > 0)][0]:g} N/m; it must be greater than 0")
-        loads = _Loads(f, np.broadcast_to(np.asarray(self.modulus, dtype=float), f.shape), self.tip)
+        modulus, h_0 = (np.broadcast_to(np.asarray(x, dtype=float), f.shape) for x in (self.modulus, self.h_0))
+        loads = _Loads(f, modulus, h_0, np.arange(len(f)), self.tip)
         count, every = len(f), len(_PRESSURES)
         grid = loads[np.tile(np.arange(count), every)]
         beyond, values = (each.reshape(every, count) for each in self._excess(_PRESSURES, voltage, grid))
@@ -213,14 +219,24 @@ class Cylinder:
             loads: of each ridge.
             near: values of m - 1 to start at.
         """
-        count = len(loads.f) // len(p_c)
-        d_eq = np.repeat(np.asarray(self.closure(p_c).d_eq, dtype=float), count)
-        if self.stiffening is not None:
-            loads = replace(loads, modulus=loads.modulus + np.repeat(self.stiffening(p_c), count))
+        d_eq, gain = self._laws_at(p_c, loads)
+        loads = loads if gain is None else replace(loads, modulus=loads.modulus + gain)
         volts = voltage(d_eq) if callable(voltage) else voltage
-        sigma = VACUUM_PERMITTIVITY * volts**2 / 2 / (self.h_0 + d_eq) ** 2
-        beyond = self._edge(loads, sigma, self.h_0 + 2 * d_eq, near)
+        sigma = VACUUM_PERMITTIVITY * volts**2 / 2 / (loads.h_0 + d_eq) ** 2
+        beyond = self._edge(loads, sigma, loads.h_0 + 2 * d_eq, near)
         return self._half_width(loads, beyond, sigma)[0], beyond, sigma, d_eq
+
+    def _laws_at(self, p_c: Array, loads: _Loads) -> tuple[Array, Array | None]:
+        """Return the air gap (m) of each ridge, and what its modulus gains (Pa); arguments of :meth:`_at`."""
+        count = len(loads.f) // len(p_c)
+        if not isinstance(self.closure, Sequence):
+            gain = None if self.stiffening is None else np.repeat(self.stiffening(p_c), count)
+            return np.repeat(np.asarray(self.closure(p_c).d_eq, dtype=float), count), gain
+        pressures, d_eq = np.repeat(p_c, count), np.empty(len(loads.f))
+        order = np.argsort(loads.number, kind="stable")
+        for places in np.split(order, np.flatnonzero(np.diff(loads.number[order])) + 1):
+            d_eq[places] = self.closure[loads.number[places[0]]](pressures[places]).d_eq
+        return d_eq, None if self.stiffening is None else self.stiffening(pressures, loads.number)
 
     def _excess(self, p_c: Array, voltage: Voltage, loads: _Loads, near: Array | None = None) -> tuple[Array, Array]:
         """Return m - 1, and what pressures bear beyond attraction and force (N/m); arguments of :meth:`_at`."""

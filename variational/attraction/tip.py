@@ -20,9 +20,9 @@ With p = 2 both are the same. :func:`kernel` has k and p of a profile of cosines
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Callable
+from dataclasses import dataclass, fields, replace
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -40,9 +40,17 @@ class Tip(ABC):
     power: Any
     """p of the contact force over the length in contact."""
 
-    def __getitem__(self, chosen: NDArray[np.intp]) -> "Tip":
+    def __getitem__(self, chosen: NDArray[np.intp]) -> Self:
         """Return the tips of some loads."""
-        return self
+        return self._with(lambda _, value: value[chosen] if np.ndim(value) else value)
+
+    def scaled(self, factor: ArrayLike) -> Self:
+        """Return tips with all lengths on another scale, one for all loads or one for each."""
+        return self._with(lambda name, value: value if name == "power" else factor * value)
+
+    def _with(self, change: Callable[[str, Any], Any]) -> Self:
+        names = [each.name for each in fields(self)]  # type: ignore[arg-type]
+        return replace(self, **{name: change(name, getattr(self, name)) for name in names})  # type: ignore[type-var]
 
     @abstractmethod
     def modulus(self, f: ArrayLike, length: ArrayLike) -> Array:
@@ -68,7 +76,7 @@ class Tip(ABC):
 class Round(Tip):
     """A cylinder."""
 
-    radius: float
+    radius: float | Array
     """R (m)."""
     power = 2.0
 
@@ -99,14 +107,10 @@ class Power(Tip):
     half: Array
     """a_0 (m)."""
 
-    def __getitem__(self, chosen: NDArray[np.intp]) -> "Power":
-        """Return the tips of some loads."""
-        return Power(self.power[chosen], self.depth[chosen], self.half[chosen])
-
     def modulus(self, f: ArrayLike, length: ArrayLike) -> Array:
         """Return the modulus; the power law goes on to other lengths than that of the tip."""
         a = np.asarray(length) / 2
-        return np.asarray(f / (self.depth * (a / self.half) ** self.power))
+        return np.asarray(np.asarray(f) / (self.depth * (a / self.half) ** self.power))
 
     def half_width(self, modulus: Array, f: Array, pull: Array) -> tuple[Array, Array]:
         """Return the root by Newton's method, which is monotone from the right: the force is convex in a."""
@@ -131,7 +135,7 @@ class Power(Tip):
         return k * open_, p * k / a * open_, k * 2 / np.pi * p * m ** (p - 1) * inside
 
 
-def kernel(heights: Sequence[float], wavelength: float, a: ArrayLike) -> tuple[Array, Array]:
+def kernel(heights: ArrayLike, wavelength: float, a: ArrayLike) -> tuple[Array, Array]:
     r"""Return k (m) and the power p of a profile about half-lengths a (m) of its contact, which is at the crest.
 
     With :math:`g_0 = \sum_j s_j (1 - \cos q_j x)`: :math:`k = \frac{\pi a}{2} \sum_j s_j q_j J_1(q_j a)` and
@@ -145,6 +149,7 @@ def kernel(heights: Sequence[float], wavelength: float, a: ArrayLike) -> tuple[A
     from scipy.special import j0, j1
 
     a = np.asarray(a, dtype=float)[..., None]
+    heights = np.asarray(heights, dtype=float)
     q = 2 * np.pi / wavelength * np.arange(1, len(heights) + 1)
     k, slope = (
         (np.pi * a / 2 * heights * q * j1(q * a)).sum(-1),

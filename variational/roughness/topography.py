@@ -1,14 +1,9 @@
-r"""Height maps of a ridge's surface: what is taken away from them and how their heights are distributed.
+r"""Height maps of a ridge's surface: what is taken away from them, and missing pixels.
 
 A map of heights h (m) over a rectangle loses its mean, its tilt or its curvature by least squares, that is by
 projection off the polynomials of degree 0, 1 or 2 (Forsbach et al. 2023, section 3.1,
-doi:10.3389/fmech.2022.1074393). Of what is left, with <.> the mean over the map,
-
-.. math:: h_{rms}^2 = \langle h^2 \rangle, \quad
-          S_{sk} = \langle h^3 \rangle / h_{rms}^3, \quad S_{ku} = \langle h^4 \rangle / h_{rms}^4
-
-(ISO 25178-2; 0 and 3 for a Gaussian). Removing a trend removes roughness too: of 3.1 um rms
-a map of 100 um x 100 um keeps 2.2 um without its curvature (tests/test_topography.py).
+doi:10.3389/fmech.2022.1074393). Removing a trend removes roughness too: of 3.1 um rms a map of 100 um x 100 um keeps
+2.2 um without its curvature (tests/test_topography.py).
 
 **Missing pixels** are filled so that what is around them goes on smoothly. About the measured heights' mean, tilt and
 curvature, by least squares, a missing height is the mean of its neighbours: the discrete Laplace equation, with the
@@ -18,7 +13,7 @@ than the surface: it takes away roughness that is finer than a hole, about in pr
 """
 
 from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -97,32 +92,6 @@ def polynomials(shape: tuple[int, ...], degree: int) -> Array:
     powers = [(i, j) for i in range(degree + 1) for j in range(degree + 1 - i)]
     columns = [np.multiply.outer(x**i, y**j).ravel() for i, j in powers]
     return np.linalg.qr(np.stack(columns, axis=1))[0]
-
-
-class Distribution(NamedTuple):
-    """How the heights of one or more maps are distributed about their means."""
-
-    h_rms: float
-    """Root mean square height (m)."""
-    skewness: float
-    kurtosis: float
-    """Fourth moment over h_rms^4: 3 for a Gaussian."""
-
-
-def distribution(*maps: HeightMap) -> Distribution:
-    """Return the distribution of the heights of all maps together, each about its own mean.
-
-    Raises:
-        ValueError: no maps, or flat ones.
-    """
-    if not maps:
-        raise ValueError("a distribution of heights needs at least one map")
-    h = np.sort(np.concatenate([(m.heights - m.heights.mean()).ravel() for m in maps]))
-    h_rms = float(np.sqrt(np.mean(h**2)))
-    if h_rms == 0:
-        raise ValueError("all heights are the same; there is no roughness to describe")
-    z = h / h_rms
-    return Distribution(h_rms, float(np.mean(z**3)), float(np.mean(z**4)))
 
 
 def filled(heights: Array) -> Array:

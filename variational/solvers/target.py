@@ -1,7 +1,7 @@
 """What is prescribed of the bone, a load to reach, the loads on the way to it, and how far a path has come."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,8 +45,9 @@ class Target:
     bone_x: float | None = None
     until_full_slip: bool = False
     """Stop as soon as every point in contact slips one way."""
-    voltage_at: Callable[[float], float] | None = None
-    """Voltage (V) at a part of the way before its end; by default its square goes evenly."""
+    along: Mapping[str, Callable[[float], float]] = field(default_factory=dict)
+    """By the name of an attribute above its value at a part of the way before the end; by default the root of
+    ``f_ext``, the square of the voltage, and places go evenly."""
     touches: bool = False
     """Lower the bone from the air to the screen, before a load by a force."""
     continues: bool = False
@@ -109,11 +110,14 @@ class Way:
             # equal steps of the root: nearly equal steps of the indentation
             f0 = max(a.control.force, 0.0)
             c.y, c.force = None, (np.sqrt(f0) + part * (np.sqrt(target.f_ext) - np.sqrt(f0))) ** 2
-        if target.voltage_at is not None and part < 1:
-            return c, target.voltage_at(part)
         # equal steps of U^2, which the attraction follows; a sign that changes does so at once, which changes no force
         amount = np.sqrt(a.voltage**2 + part * (u1**2 - a.voltage**2))
-        return c, float(np.copysign(amount, u1 or a.voltage)) + 0.0
+        voltage = float(np.copysign(amount, u1 or a.voltage)) + 0.0
+        if target.along and part < 1:
+            now = {name: value(part) for name, value in target.along.items()}
+            c.x, c.y, c.force = now.get("bone_x", c.x), now.get("bone_height", c.y), now.get("f_ext", c.force)
+            voltage = now.get("voltage", voltage)
+        return c, voltage
 
     def largest_step(self, scale: float) -> float:
         """Return the largest part of the target that one step may cover; ``scale`` multiplies the usual one."""

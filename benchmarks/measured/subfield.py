@@ -14,7 +14,7 @@ from dolfinx.fem.petsc import LinearProblem
 from mpi4py import MPI
 from numpy.typing import NDArray
 
-from benchmarks.feel import scenes
+from benchmarks.measured import felt
 from fingerpad.model.options import FingerModel, by_rule, plan
 from geometry import fingertip, mesh
 from geometry.profiles import Profiles
@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 
 def response() -> tuple[Array, Array]:
     """Return arc lengths from the middle of ridge 0 (m), and the site's stress over its largest; on one rank."""
-    scene = scenes.onset()
+    scene = felt.onset()
     model, profiles = FingerModel(by_rule(scene), plan(scene)), Profiles(scene.geometry)
     tagged = mesh.load(MPI.COMM_SELF, partial(fingertip.build, model.geometry, model.mesh, True, False, ()))
     V = fem.functionspace(tagged.mesh, ("Lagrange", 2, (2,)))
