@@ -61,10 +61,9 @@ def run(scene: Scene, context: RunContext) -> Result:
     """Reach every load of a scene; refine where it asks for an accuracy; collective.
 
     Where the scene does not give the number of ridges that can touch, a rule of thumb does. Where ridges come near the
-    screen that could not touch, the accepted state is solved for again on a mesh on which they can, and its path goes
-    on. All loads are gone through again where another omitted part of the model turns out to matter: the other half of
-    a finger that may not stay symmetric, or smaller elements where no equilibrium is found without them; and with
-    viscous layers, whose past is that of their mesh. A scene that asks for an accuracy starts coarse.
+    screen that could not, the path goes on on a mesh with them; with viscous layers all loads are gone through again. So
+    they are where the other half of a finger turns out to matter, which may not stay symmetric, or smaller elements,
+    without which no equilibrium is found. A scene that asks for an accuracy starts coarse.
 
     Args:
         scene: what is run.
@@ -82,8 +81,7 @@ def run(scene: Scene, context: RunContext) -> Result:
         SceneError: the finger cannot be meshed; on every rank.
         DiskFull: there is no more room for results; on the ranks that found out, which end the others.
     """
-    comm = context.comm or MPI.COMM_WORLD
-    outputs = checked(context.outputs)
+    comm, outputs = context.comm or MPI.COMM_WORLD, checked(context.outputs)
     all_together(comm)
     check_options(comm, scene.numerics.element)
     try:
@@ -181,8 +179,9 @@ class _Attempt:
         """Return what is kept of a run that is stopped, and how it goes on, in words."""
         if self._session.checkpoint is None:
             return ""
-        resumes = "fingerpad run --resume FOLDER goes on from there"
-        goes_on = resumes if self._has_kept else "the same command starts again"
+        goes_on = (
+            "fingerpad run --resume FOLDER goes on from there" if self._has_kept else "the same command starts again"
+        )
         return f"every accepted step is in the folder of results, and {goes_on}"
 
     def _on_load(self) -> None:
@@ -215,11 +214,7 @@ class _Attempt:
         return self._state(self.simulation.carried()) | {"items": self.report.record.states, "kept": self._has_kept}
 
     def resume(self, kept: dict[str, Any]) -> RestartRequired | None:
-        """Go on from a checkpoint, as :func:`fingerpad.runs.checkpoint.read` gives it, or another mesh; collective.
-
-        Returns:
-            That all loads must be gone through again, where the state was of another mesh and is not found on this one.
-        """
+        """Go on from a checkpoint, or another mesh; return that all loads must be gone through again if it is in vain."""
         self._has_kept, self._done, states = kept.get("kept", True), kept["done"], kept["items"]
         try:
             self.simulation.resume(kept["simulation"], [*states])
