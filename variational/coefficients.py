@@ -5,7 +5,7 @@ UFL coefficients in the place of the numbers.
 """
 
 import copy
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import MISSING, field, fields, is_dataclass, replace
 from importlib import import_module
 from typing import Any, ClassVar, Self
@@ -133,6 +133,10 @@ class Law(Named):
         for name, value in values.items():
             object.__setattr__(found, name, value)
         return found
+
+    def with_constants(self, constant: Callable[[float], Any]) -> Self:
+        """Return the law with what ``constant`` makes of each of its numbers."""
+        return self.with_values({name: constant(self.number(name)) for name in self.names()})
 
     def kind(self) -> tuple[Any, ...]:
         """Return what two laws must share to be written as one form: the type, and all that is no number."""

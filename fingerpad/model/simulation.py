@@ -332,7 +332,7 @@ class Simulation:
         if not target.slips:
             energy = self.energy.step(*finger.surface_and_bone())
             record = step_record(finger.continuation, energy, imbalance, attempt)
-        if record and not (loads.f_contact.any() or finger.voltage):
+        if record and not (loads.f_contact.any() or finger.voltage or finger.problem.interface.adhesion):
             where = f"step {finger.continuation.steps} ({self._load})"
             formulation = finger.problem.interface.formulation
             refuse_strained(where, record, self.states, finger.solver.force_scale, formulation)

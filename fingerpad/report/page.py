@@ -132,11 +132,8 @@ def recipe(of: Mapping[str, Any], model: str, axes: Mapping[str, list[Any]] | No
         axes: values of each key that is varied; None of a run.
         option: another one of the command.
     """
-    over, lines = axes or {}, list[str]()
-    for key in dict.fromkeys(name.partition("[")[0] for name in changed_keys(of)):  # a list as a whole
-        value = reduce(getitem, key.split("."), of)
-        if value is not None and key != "model" and key not in over:
-            lines.append(f"{key} = {_toml(value)}")
+    over = axes or {}
+    lines = scene_file(of, over)
     lines += ["[sweep]", *(f"{_toml(key)} = {_toml(values)}" for key, values in over.items())] if over else []
     named = "" if model == DEFAULT_MODEL else f"--model {shlex.quote(model)}"
     parts = (
@@ -149,6 +146,16 @@ def recipe(of: Mapping[str, Any], model: str, axes: Mapping[str, list[Any]] | No
     )
     words = " ".join(filter(None, parts))
     return "\n".join(["# mine.toml", *lines, "", "# the command", words] if lines else [words])
+
+
+def scene_file(of: Mapping[str, Any], without: Collection[str] = ()) -> list[str]:
+    """Return the lines of a scene file with the parameters of a scene that are not those of the default one."""
+    lines = list[str]()
+    for key in dict.fromkeys(name.partition("[")[0] for name in changed_keys(of)):  # a list as a whole
+        value = reduce(getitem, key.split("."), of)
+        if value is not None and key != "model" and key not in without:
+            lines.append(f"{key} = {_toml(value)}")
+    return lines
 
 
 def _toml(value: Any) -> str:
