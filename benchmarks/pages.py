@@ -33,6 +33,7 @@ PAGES = {
     "paper": "benchmarks.paper.__main__",
     "peers": "benchmarks.peers.__main__",
     "performance": "benchmarks.performance",
+    "presses": "benchmarks.presses",
     "stability": "benchmarks.stability.__main__",
     "two_meshes": "benchmarks.two_meshes",
     "verification": "benchmarks.verification.case",

@@ -84,6 +84,8 @@ def cases() -> list:
 def test_shown_command_runs(line, folder, capsys, monkeypatch):
     """It ends well, prints, and writes the file or folder that it names."""
     words = small(line)
+    if words[0] == "uncertainty":
+        pytest.importorskip("SALib", reason="pip install fingerpad[uncertainty]")
     if words[0] == "report" and len(words) == 2 and words[1] != "--calculator":
         fp.run(model="cylinders", out=words[1])
     if "--animate" in words:  # a full run, whose steps have moved
