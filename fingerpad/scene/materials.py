@@ -57,6 +57,8 @@ FRICTION_LAWS = Kind(Friction, "a Friction", _named(Coulomb, Derjaguin, Occlusio
 ADHESION_LAWS = Kind(Adhesion, "an Adhesion", _named(Dugdale), lambda law: law.check())
 CLOSURES = Kind(closure.Closure, "a Closure", _named(BearingArea, BoundaryElements, Persson), closure.check)
 """Laws of the package by kind: a new one is a line here."""
+PRESET_LAWS: dict[str, type] = {**MATERIALS.laws, **CLOSURES.laws}
+"""Laws whose parameters a finger by name may set, by name."""
 LAYERS = {name.replace(" ", "_"): tag for name, tag in tags.LAYERS.items()}
 """Tag of each layer by its key in the scene."""
 

@@ -288,7 +288,8 @@ class Slices(Table):
         for name, values in tables.items():
             if len(values) != len(self.z):
                 raise ValueError(f"{name} has {len(values)} values and z has {len(self.z)}; each place needs one value")
-        given = [name for name in ("radius", "length", "shape") if name in self.model_fields_set]
+        given = [name for name in ("radius", "length") if name in self.model_fields_set]
+        given += ["shape"] if self.shape != "parabola" else []
         if self.height is not None and given:
             raise ValueError(
                 f"{given[0]} is {show(getattr(self, given[0]))} and height is given too; leave out one of them"

@@ -22,11 +22,10 @@ from fingerpad.scene.loads import Load, drives, refuse_contradictions, refuse_fl
 from fingerpad.scene.materials import (
     ADHESION,
     BEARING_AREA,
-    CLOSURES,
     FRICTION,
     LAYERS,
-    MATERIALS,
     NO_ADHESION,
+    PRESET_LAWS,
     ROUGHNESS,
     Materials,
     adheres,
@@ -52,8 +51,6 @@ from geometry.units import Finite, Table, computed, within
 from variational.contact.friction import Friction, law_of
 from variational.materials.material import Material
 from variational.roughness.closure import Closure
-
-_LAWS: dict[str, type] = {**MATERIALS.laws, **CLOSURES.laws}
 
 
 class Scene(Table):
@@ -110,10 +107,10 @@ class Scene(Table):
         given = plain(data)
         refuse_beside_mesh(given)
         try:
-            self.__pydantic_validator__.validate_python(with_presets(given, _LAWS), self_instance=self)
+            self.__pydantic_validator__.validate_python(with_presets(given, PRESET_LAWS), self_instance=self)
         except ValidationError as error:
             raise SceneError(first_error(error, Scene, (key.name for key in every(Scene)))) from None
-        self._preset = preset_keys(given, _LAWS, Scene)
+        self._preset = preset_keys(given, PRESET_LAWS, Scene)
 
     def __eq__(self, other: object) -> bool:
         """Return whether another scene has the same values, whichever of them were given."""
@@ -322,7 +319,7 @@ def overridden(data: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str,
     Raises:
         SceneError: a table, or an entry of a list, that is not there.
     """
-    found = without(data, preset_keys(data, _LAWS, Scene)) if "finger" in changes else dict(data)
+    found = without(data, preset_keys(data, PRESET_LAWS, Scene)) if "finger" in changes else dict(data)
     put_all(found, changes)
     return found
 
