@@ -20,6 +20,7 @@
 # make viscosity  how skin relaxes, energy of random histories, friction after a step of voltage; docs/laws.md
 # make loads  seeded scenes of people's loads beside the closed form; docs/closed_form.md, an hour or two in pieces of twenty minutes
 # make performance  counts, ratios and seconds, part by part, on an idle machine; docs/performance.md, half an hour
+# make calibrate  keys found again from synthetic tables, cover of their regions; docs/calibrate.md, a quarter of an hour
 # make calibration  estimated errors beside known ones, scene by scene; docs/errors.md, ten minutes
 # make chart  error over work, one numerical setting after the other; docs/errors.md, half an hour or more
 #
@@ -104,6 +105,9 @@ viscosity:
 loads:
 	$(run) python3 -m benchmarks.loads.fresh
 	$(run) python3 -m benchmarks.loads
+
+calibrate:
+	$(run) python3 -m benchmarks.calibrate
 
 calibration:
 	$(run) python3 -m benchmarks.two_meshes

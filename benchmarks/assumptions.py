@@ -247,16 +247,6 @@ def draw(docs: Path) -> Path:
     return harness.page(docs, "assumptions", "python3 -m benchmarks.assumptions", globals() | names)
 
 
-def main() -> int:
-    """Run the command: as :func:`benchmarks.harness.main`, and ``--missing``."""
-    parser = harness.parser(__doc__)
-    parser.add_argument("--missing", action="store_true", help="run only what docs/assumptions.json lacks")
-    args = parser.parse_args()
-    if not args.draw:
-        compute(args)
-    print(draw(args.docs))
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    missing = {"action": "store_true", "help": "run only what docs/assumptions.json lacks"}
+    sys.exit(harness.main(__doc__, compute, draw, missing=missing))

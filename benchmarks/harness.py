@@ -97,9 +97,28 @@ def solve(
     return found
 
 
-def main(description: str | None, compute: Compute, draw: Draw, given: Sequence[str] | None = None) -> int:
-    """Run the command of a study: compute and keep the numbers, unless ``--draw`` is given, then draw the page."""
-    args = parser(description).parse_args(given)
+def main(
+    description: str | None,
+    compute: Compute,
+    draw: Draw,
+    given: Sequence[str] | None = None,
+    out: str = "traces",
+    **options: Mapping[str, Any],
+) -> int:
+    """Run the command of a study: compute and keep the numbers, unless ``--draw`` is given, then draw the page.
+
+    Args:
+        description: of the study.
+        compute: takes the options that were given.
+        draw: of a folder of pages.
+        given: words of the command; by default the program's own.
+        out: folder of runs, below ``results``.
+        options: of the study alone by name, as argparse takes them.
+    """
+    asked = parser(description, out)
+    for name, form in options.items():
+        asked.add_argument(f"--{name}", **form)
+    args = asked.parse_args(given)
     if not args.draw:
         compute(args)
     print(draw(args.docs))

@@ -20,6 +20,7 @@ ROOT = Path(__file__).resolve().parents[1]
 PAGES = {
     "accuracy": "benchmarks.accuracy",
     "assumptions": "benchmarks.assumptions",
+    "calibrate": "benchmarks.calibrate",
     "chart": "benchmarks.chart",
     "drive": "benchmarks.drive",
     "errors": "benchmarks.errors",
@@ -33,6 +34,7 @@ PAGES = {
     "paper": "benchmarks.paper.__main__",
     "peers": "benchmarks.peers.__main__",
     "performance": "benchmarks.performance",
+    "presses": "benchmarks.presses",
     "stability": "benchmarks.stability.__main__",
     "two_meshes": "benchmarks.two_meshes",
     "verification": "benchmarks.verification.case",

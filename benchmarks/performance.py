@@ -6,6 +6,7 @@ Each part is measured in processes of its own and kept with the version and the 
 ratios are the same on a busy machine; the part "ranks" is refused on one. Writes docs/performance.json and the page.
 """
 
+import argparse
 import json
 import os
 import subprocess
@@ -83,9 +84,10 @@ PARTS = {
 }
 
 
-def measure(names: Sequence[str], docs: Path) -> None:
-    """Measure the named parts and keep them, the others staying as they are."""
-    for name in names:
+def measure(args: argparse.Namespace) -> None:
+    """Measure the parts asked for, or all, and keep them, the others staying as they are."""
+    docs = args.docs
+    for name in args.part or PARTS:
         load, by = os.getloadavg()[0], made()
         try:
             part = {"load": load, "made": asdict(by), "found": PARTS[name]()}
@@ -130,16 +132,6 @@ def draw(docs: Path) -> Path:
     return harness.page(docs, "performance", "make performance", globals() | names)
 
 
-def main(given: Sequence[str] | None = None) -> int:
-    """Measure, keep and draw."""
-    parser = harness.parser(__doc__)
-    parser.add_argument("--part", action="append", choices=PARTS, help="measure this part alone; may be repeated")
-    args = parser.parse_args(given)
-    if not args.draw:
-        measure(args.part or list(PARTS), args.docs)
-    print(draw(args.docs))
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    alone = {"action": "append", "choices": PARTS, "help": "measure this part alone; may be repeated"}
+    sys.exit(harness.main(__doc__, measure, draw, part=alone))

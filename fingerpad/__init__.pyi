@@ -2,6 +2,8 @@
 
 import geometry as geometry
 from fingerpad import afferents as afferents
+from fingerpad.measurements.calibrate import Calibration as Calibration
+from fingerpad.measurements.calibrate import calibrate as calibrate
 from fingerpad.measurements.compare import compare as compare
 from fingerpad.model.body import Body as Body
 from fingerpad.reduced.closed_form import ClosedForm as ClosedForm
@@ -20,6 +22,8 @@ from fingerpad.runs.sweep_results import Sweep as Sweep
 from fingerpad.scene import Scene as Scene
 from fingerpad.scene import SceneError as SceneError
 from fingerpad.scene.people import people as people
+from variational.attraction.adhesion import Adhesion as Adhesion
+from variational.attraction.adhesion import Dugdale as Dugdale
 from variational.attraction.circuit import GapCircuit as GapCircuit
 from variational.attraction.dielectric import ColeCole as ColeCole
 from variational.attraction.dielectric import TabledTissue as TabledTissue

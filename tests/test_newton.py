@@ -108,6 +108,19 @@ def test_steady_slip_is_solved_at_once(body):
     assert solver.counts.newton - before == 1
 
 
+def test_friction_is_softened_only_where_steps_were_cut_before(body, monkeypatch):
+    """On flat tips softening took 40 to 100 factorisations in a step, and a smaller step takes ten."""
+    solver, softened = make(body, MU_F, held=False), []
+    monkeypatch.setattr(solver.iteration, "run", lambda *args, **options: -1)
+    monkeypatch.setattr(solver, "_sideways", lambda: 1.0)
+    monkeypatch.setattr(solver, "_ease", lambda start: softened.append(start) or 1)
+    with pytest.raises(NotConverged):
+        solver.solve()
+    assert not softened
+    solver.solve(pseudo_transient=True)
+    assert len(softened) == 1
+
+
 # -- Anderson acceleration with a kept factorisation -----------------------------------------------------------------
 SIZE, RANK = 60, 3
 ROWS = np.array_split(np.arange(SIZE), MPI.COMM_WORLD.size)[MPI.COMM_WORLD.rank]

@@ -54,7 +54,7 @@ def test_pypi(project):
     found = {name: set(_split(listed)) for name, listed in extras.items()}
     # gmsh is on PyPI under its own name; the other finite elements are in the wheel or come with it.
     assert found.pop("pip") == _column(3, "pip") | {"gmsh"}
-    assert found == {name: _column(3, name) for name in ("fem", "test", "docs", "topography", "pyvista")}
+    assert found == {name: _column(3, name) for name in ("fem", "test", "docs", "topography", "pyvista", "uncertainty")}
 
 
 def test_wheel_of_dolfinx_is_pinned(project):

@@ -98,8 +98,9 @@ def of_person(known, size, stiffness):
 
     forces = tuple(size * stiffness * each for each in known.forces)
     return replace(
-        known, forces=forces, lengths=times(size, known.lengths), indentations=times(size, known.indentations)
-    )
+        known, forces=forces, lengths=times(size, known.lengths), indentations=times(size, known.indentations),
+        roll=size * stiffness * known.roll,
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize(

@@ -58,7 +58,7 @@ def test_output_is_read_back(result):
     assert str(again) == str(result)
     more = again.with_outputs([fp.Output("twice", "J/m^3", lambda state: 2 * state.sites.merkel.max())])
     assert more.charged.twice == 2 * result.charged.merkel_max == 2 * more.steps[8].merkel_max
-    assert [output.name for output in more.outputs] == ["p_mean", "merkel_max", "twice"]
+    assert [output.name for output in more.outputs] == ["p_mean", "merkel_max", "stuck_share", "shear_stress", "twice"]
 
 
 def test_output_of_a_sweep(tmp_path):

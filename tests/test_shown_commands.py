@@ -60,6 +60,10 @@ def folder(tmp_path, monkeypatch) -> Path:
     page = (ROOT / "docs" / "command.md").read_text(encoding="utf-8")
     shown = re.search(r"^    # source: .*?(?=\n\n)", page, re.MULTILINE | re.DOTALL)
     (tmp_path / "mine.csv").write_text(textwrap.dedent(shown[0]), encoding="utf-8")
+    people = [f"{k},{f},{u},{mu * (f + 4e-6 * u**2 * f**0.7)}" for k, mu in enumerate((0.2, 0.3, 0.4, 0.25))
+              for f in (0.2, 0.5) for u in (0, 100, 200)]  # fmt: skip
+    head = "participant,force (N),voltage (V),friction force (N)"
+    (tmp_path / "people.csv").write_text("\n".join([head, *people]) + "\n", encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     return tmp_path
 
@@ -84,6 +88,8 @@ def cases() -> list:
 def test_shown_command_runs(line, folder, capsys, monkeypatch):
     """It ends well, prints, and writes the file or folder that it names."""
     words = small(line)
+    if words[0] == "uncertainty":
+        pytest.importorskip("SALib", reason="pip install fingerpad[uncertainty]")
     if words[0] == "report" and len(words) == 2 and words[1] != "--calculator":
         fp.run(model="cylinders", out=words[1])
     if "--animate" in words:  # a full run, whose steps have moved

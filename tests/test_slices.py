@@ -67,14 +67,36 @@ def test_pressure_is_what_the_contact_bears_over_its_length():
     assert total.totals["f_electrostatic"] > 0.5 * total.totals["f_ext"]
 
 
-def test_tilt_moves_a_parabola():
-    """s + θ z is the parabola again, with its lowest point at −θ R: the finger is indented there as much."""
-    tilt, force = 0.1, 0.5
-    even = at_force(profile(Slices()), foundation(), force, 48)
-    tilted = at_force(profile(Slices(tilt=tilt)), foundation(), force, 48)
-    assert tilted.totals["gross_area"] == pytest.approx(even.totals["gross_area"], rel=EXACT)
-    assert tilted.values["indentation"] == pytest.approx(even.values["indentation"], rel=1e-6)
-    assert_allclose(tilted.z, even.z - tilt * R_Z, atol=1e-9)
+@pytest.mark.parametrize("tilt", [0.2, 0.35, -0.785])
+def test_tilted_sphere(tilt):
+    """A sphere is the same at any angle, with its lowest point at −R sin α; roundoff of square roots at its tip."""
+    sphere = {"radius": R_X, "length": 2 * R_X, "shape": "ellipsoid"}
+    fingers = (profile(Slices(**sphere, tilt=angle)) for angle in (0.0, tilt))
+    level, turned = (at_indentation(each, foundation(), 1e-3, 48) for each in fingers)
+    assert turned.values == pytest.approx(level.values, rel=1e-9)
+    assert_allclose(turned.z[turned.depth.argmax()], -R_X * np.sin(tilt), atol=2e-4)  # two slices are 0.2 mm apart
+
+
+@pytest.mark.parametrize("tilt", [0.1, 0.35])
+def test_tilted_paraboloid(tilt):
+    """The plane cuts it in an ellipse of 2 π √(R_x R_z) δ / cos² α; upright layers are thicker by 1 / cos α there.
+
+    Tolerance: slices are parabolas, of second order in the length of contact over R_z times the slope.
+    """
+    total = at_indentation(profile(Slices(radius=R_Z, tilt=tilt)), foundation(), 5e-5, 48)
+    root, cosine = np.sqrt(R_X * R_Z), np.cos(tilt)
+    assert total.totals["gross_area"] == pytest.approx(2 * np.pi * root * 5e-5 / cosine**2, rel=1e-4)
+    assert total.totals["f_ext"] == pytest.approx(np.pi * FOUNDATION * root * 5e-5**2 / cosine, rel=1e-3)
+
+
+def test_tilted_finger_of_the_default_length():
+    """The parabola ends at some 20 degrees; half an ellipsoid touches with its pad at 45, on narrower slices."""
+    with pytest.raises(SceneError, match="lowest at its end.*ellipsoid"):
+        at_force(profile(Slices(tilt=0.5)), kept(200.0), 0.5, 48)
+    fingers = (profile(Slices(shape="ellipsoid", tilt=angle)) for angle in (0.0, 0.785))
+    level, tilted = (at_force(each, kept(200.0), 0.2, 48) for each in fingers)
+    assert tilted.delta > level.delta
+    assert tilted.totals["gross_area"] < level.totals["gross_area"]
 
 
 def test_scale_of_the_slices():

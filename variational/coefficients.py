@@ -5,7 +5,7 @@ UFL coefficients in the place of the numbers.
 """
 
 import copy
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import MISSING, field, fields, is_dataclass, replace
 from importlib import import_module
 from typing import Any, ClassVar, Self
@@ -13,7 +13,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 
-class Lazy:
+class _Lazy:
     """A module by its name, imported when something of it is first used.
 
     A law is a value: its numbers, their units and their ranges. Scenes, folders and reports hold laws where UFL may be
@@ -28,8 +28,8 @@ class Lazy:
         return getattr(import_module(self._name), attribute)
 
 
-ufl: Any = Lazy("ufl")
-kinematics: Any = Lazy("variational.kinematics")
+ufl: Any = _Lazy("ufl")
+kinematics: Any = _Lazy("variational.kinematics")
 
 OF_SCENE = {"of scene": True}
 """Metadata of a field that a scene gives by itself, such as the thickness of its insulators; no key of the law."""
@@ -133,6 +133,10 @@ class Law(Named):
         for name, value in values.items():
             object.__setattr__(found, name, value)
         return found
+
+    def with_constants(self, constant: Callable[[float], Any]) -> Self:
+        """Return the law with what ``constant`` makes of each of its numbers."""
+        return self.with_values({name: constant(self.number(name)) for name in self.names()})
 
     def kind(self) -> tuple[Any, ...]:
         """Return what two laws must share to be written as one form: the type, and all that is no number."""

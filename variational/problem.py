@@ -13,10 +13,10 @@ which may bring a pressure p and a second equation, p = K (J - 1) weakly; p_n an
 :mod:`~variational.contact.friction` and :mod:`~variational.contact.formulation` in one of the formulations
 :mod:`~variational.contact.penalty`, :mod:`~variational.contact.nitsche` (with terms of its own) and
 :mod:`~variational.contact.augmented`; p_el: :mod:`~variational.attraction.electroadhesion`, written as the derivative
-of its potential. Without a voltage the attraction is left out, without a law of friction t_t is. Friction makes the
-derivative unsymmetric. The derivative may carry a shift :math:`\int \eta\, du \cdot v \,dS`, which is no part of the
-equations but of pseudo-transient continuation (:mod:`~variational.solvers.transient`). This module adds up forms and
-never solves.
+of its potential, as is :mod:`~variational.attraction.adhesion`. Without a voltage p_el is left out, without a law of
+friction t_t is. Friction makes the derivative unsymmetric. The derivative may carry a shift :math:`\int \eta\, du \cdot
+v \,dS`, which is no part of the equations but of pseudo-transient continuation (:mod:`~variational.solvers.transient`).
+This module adds up forms and never solves.
 """
 
 from collections.abc import Callable, Mapping
@@ -113,6 +113,7 @@ class Problem:
         self.ease, self.dt, self.lapse = (self._constant(value) for value in (1.0, 0.0, 0.0))
         self._friction = None if interface.friction is None else interface.friction.with_constants(self._constant)
         self._h_0 = self._constant(interface.h_0)
+        self._adhesion = None if interface.adhesion is None else interface.adhesion.with_constants(self._constant)
         self._springs: list[fem.Constant] = []
 
         self._dx = ufl.Measure(
@@ -131,6 +132,9 @@ class Problem:
         if interface.attraction:
             potential = interface.attraction.potential(self.y, self.d_eq, self._shared_voltage, self._h_0)
             pulled = -potential * self.area[1] * surface.measure
+            energy, stored = energy + pulled, stored + pulled
+        if self._adhesion:
+            pulled = -self._adhesion.potential(self.y) * self.area[1] * surface.measure
             energy, stored = energy + pulled, stored + pulled
         self._compile(energy, stored)
         self._add_history()
@@ -202,7 +206,7 @@ class Problem:
             self.anchor,
             self.multiplier,
             cache(lambda: self._skin_stress(F) * normal),
-            self.p_el * self.area,
+            (self.p_el + self._adhesion.pressure(self.y) if self._adhesion else self.p_el) * self.area,
             lambda: self._skin_stiffness(solids, cellwise),
             of_springs,
             self._memory,

@@ -42,7 +42,7 @@ _ENGINEERING = np.array([1.0, 1.0, 2.0])  # stress 12 does work on twice strain 
 
 
 @dataclass(frozen=True, eq=False)
-class LayerField(BodyField):
+class _LayerField(BodyField):
     """Numbers at the quadrature points of some layers, as the polynomial through them; zero in other layers."""
 
     layers: "Relaxation"
@@ -120,7 +120,7 @@ class Relaxation:
         spaces = {_STRESS: stresses, _STRAIN: space(3), **dict.fromkeys(self._overstresses, stresses)}
         spaces |= {_WORK: space(1), _ENERGIES: space(len(law.branches))}
         functions = {name: fem.Function(each) for name, each in spaces.items()}
-        self.fields = {name: LayerField(f"{name} of {self._named}", None, f, self) for name, f in functions.items()}
+        self.fields = {name: _LayerField(f"{name} of {self._named}", None, f, self) for name, f in functions.items()}
         element = spaces[_WORK].element.basix_element
         self.to_points = np.asarray(element.tabulate(0, self._points))[0, :, :, 0]
         self._to_nodes = np.linalg.inv(self.to_points)

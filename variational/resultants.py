@@ -38,8 +38,10 @@ class RidgeLoads:
     f_limit: Array
     """Largest friction that the law allows under the contact pressure (N/m): at full slip that on the skin."""
     f_attraction: Array
-    """Downward resultant of the attraction (N/m)."""
+    """Downward resultant of the electrostatic attraction (N/m)."""
     f_attraction_x: Array
+    f_adhesion: Array
+    """Downward resultant of the adhesion without a voltage (N/m)."""
     length: Array
     """Current length in contact, p_n > 0 (m); its ends are located inside facets."""
 
@@ -108,8 +110,14 @@ class Observer:
             f_limit=integrate(self.limit(s)),
             f_attraction=-integrate(s.p_el * s.area_y),
             f_attraction_x=integrate(s.p_el * s.area_x),
+            f_adhesion=-integrate(self.adhesion(s) * s.area_y),
             length=self.surface.sum_over_facets(self.surface.closed_length(s.x, s.y, gap)),
         )
+
+    def adhesion(self, state: SurfaceState) -> Array:
+        """Return the attraction without a voltage (Pa of current area) at this rank's points."""
+        law = self.problem.interface.adhesion
+        return np.zeros_like(state.y) if law is None else np.asarray(law.pressure(state.y))
 
     def limit(self, state: SurfaceState) -> Array:
         """Return the largest friction that the law allows (Pa of reference area) at this rank's points."""

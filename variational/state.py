@@ -200,6 +200,8 @@ class ContactState(_WithOwn):
     """Size of the facets that can touch (m)."""
     time: float = math.nan
     """Time since the start of the run's first load over time (s); NaN where no load of the run is one."""
+    f_adhesion: float = math.nan
+    """Adhesion without a voltage (N/m); NaN where there is no such law."""
     ridges: RidgeStates | None = None
     sites: Sites | None = None
     stimuli: Stimuli | None = None
@@ -220,6 +222,11 @@ class ContactState(_WithOwn):
     """Least eigenvalue of the tangent at frozen air gaps (Pa/m)."""
     gain: float | None = None
     """Largest gain of a ridge's loop over the two scales."""
+
+    @property
+    def f_attraction(self) -> float:
+        """All that draws the finger to the screen: electrostatic attraction and adhesion (N/m)."""
+        return self.f_electrostatic + (0.0 if math.isnan(self.f_adhesion) else self.f_adhesion)
 
     @property
     def p_c(self) -> Array:
@@ -249,4 +256,6 @@ class ContactState(_WithOwn):
 
 _FIELDS = fields(ContactState)[: [f.name for f in fields(ContactState)].index("record")]
 _VISCOUS = tuple(f.name for f in fields(StepRecord) if f.name.startswith("viscous"))  # columns of viscous layers
-_LAST = tuple(f for f in fields(ContactState) if f.name in ("mesh_contact", "time"))  # columns where they are known
+_LAST = tuple(
+    f for f in fields(ContactState) if f.name in ("mesh_contact", "time", "f_adhesion")
+)  # columns where they are known

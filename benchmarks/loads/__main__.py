@@ -12,7 +12,6 @@ and the number of shear of fingerpad/reduced/cylinders.py.
 
 import argparse
 import json
-import sys
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -205,10 +204,5 @@ def _paint(figure: Figure, every: Sequence[Compared]) -> None:
 
 
 if __name__ == "__main__":
-    given = harness.parser(__doc__, "")
-    given.add_argument("--minutes", type=float, default=_MINUTES, help="processor time after which no scene is begun")
-    args = given.parse_args()
-    if not args.draw:
-        compute(args)
-    print(draw(args.docs))
-    sys.exit(0)
+    minutes = {"type": float, "default": _MINUTES, "help": "processor time after which no scene is begun"}
+    harness.main(__doc__, compute, draw, out="", minutes=minutes)

@@ -354,14 +354,10 @@ def _delay(known: Mapping[str, Any]) -> Row:
 
 # -- adhesion --------------------------------------------------------------------------------------------------
 def _pull_off(case: Case) -> Row:
-    """Judge the largest tension of the whole finger while it is lifted, from slices that all were pressed."""
+    """Judge the largest tension of the whole finger while it is lifted."""
     if not adheres(case.finger.scene):
         return {"value": 0.0}, rules.MISS
-    states, pad = case.finger.path("lift", "lift"), case.finger.scene.slices
-    depth, force = np.array([(-s.bone_height, s.f_ext) for s in states]).T[:, ::-1]  # growing depths
-    z = np.linspace(-pad.length / 2, pad.length / 2, 2001)
-    every = [np.trapezoid(np.interp(d - z**2 / (2 * pad.radius), depth, force, left=0.0), z) for d in depth]
-    tension = -1e3 * float(min(every))
+    tension = -1e3 * float(case.finger.run("lift").result.record["pull_off"]["finger"])
     return {"value": tension}, rules.by_rule(case.row, tension, tension)
 
 

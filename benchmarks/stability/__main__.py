@@ -1,23 +1,24 @@
 """Where the solver converges, and at what cost: single runs of a layered strip, and random scenes of the whole finger.
 
-environment/run python3 -m benchmarks.stability [--part single | random] [--jobs 2] [--draw]
+environment/run python3 -m benchmarks.stability [--part single | random | fingers] [--jobs 2] [--draw]
 
 Each run has a process of its own and is kept in results/stability; after a change of the solver delete that folder.
-Writes docs/stability.json, and from it docs/performance.md.
+Writes docs/stability.json, and from it docs/performance.md. The part ``fingers``, hours of processor time, is run only
+where it is asked for: fingers that people have under random loads, whose table it prints.
 """
 
 import argparse
 import json
 import sys
 import tomllib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from benchmarks.harness import keep, kept, made, page, parser, run, solve, table
+from benchmarks.harness import keep, kept, made, main, page, run, solve, table
 from benchmarks.stability.solve import Case
 from fingerpad.runs.batch import Summary
 from fingerpad.scene import Scene, from_data
@@ -25,6 +26,8 @@ from fingerpad.scene import Scene, from_data
 COUNT, SEED = 20, 20  # random scenes
 FORMULATIONS = ("penalty", "nitsche", "augmented")
 LIMIT = 180.0  # s of processor time of a run
+FINGERS, FINGER_LIMIT = ("fitted", "moist", "held"), 1800.0  # fingers that people have, and s of each of their runs
+COARSE = {"contact": 20e-6, "interface": 120e-6, "growth": 0.5}  # their mesh
 MESH = {"contact": 30e-6, "interface": 150e-6, "growth": 0.8}
 SYMBOLS = {"converged": "● converged", "continuation": "▲ through continuation", "failed": "✕ failed"}
 _MODULI = {"subcutis": 25e3, "dermis": 2.55e3, "viable_epidermis": 61.75e3, "stratum_corneum": 86.76e3}  # Pa
@@ -107,6 +110,32 @@ def random(args: argparse.Namespace) -> dict[str, Any]:
     return {"made": f"version {by.version} of {by.date} (source {by.source})", "runs": rows}
 
 
+def load(number: int) -> dict[str, float]:
+    """Return a random load: a force of 10 to 150 N/m, evenly spread on a logarithm, and a voltage of 0 to 200 V."""
+    chance = np.random.default_rng([SEED, number])
+    return {"f_ext": float(f"{10 * 15 ** chance.random():.3g}"), "voltage": float(f"{200 * chance.random():.3g}")}
+
+
+def fingers(args: argparse.Namespace) -> list[dict[str, Any]]:
+    """Run the loads that are missing; print how they ended, finger by finger, and return the rows of all."""
+    quick = {"mesh": COARSE, "output": {"receptors": False, "errors": False}}
+    keys = {f"{name} {k}": (name, k) for name in FINGERS for k in range(COUNT)}
+    found = run({text: from_data({"finger": name, **load(k), **quick}) for text, (name, k) in keys.items()}, args,
+                FINGER_LIMIT)  # fmt: skip
+    rows = [
+        {"finger": name, **load(k), **summed(found[text]), "failure": found[text].get("failure", "")}
+        for text, (name, k) in keys.items()
+    ]
+    lines = []
+    for name in FINGERS:
+        mine = [row for row in rows if row["finger"] == name]
+        work = [row["factorisations"] for row in mine if row["full_slip"]]
+        ends = [len(work), sum(not row["full_slip"] and bool(row["failure"]) for row in mine), len(mine)]
+        lines.append([name, *ends, np.median(work) if work else None, max(work, default=None)])
+    print(table(["finger", "full slip", "a sentence", "of", "median factorisations", "most"], lines))
+    return rows
+
+
 def summed(summary: Summary) -> dict[str, Any]:
     """Return what the page shows of a run; factorisations are those of restarts too."""
     again = summary.get("restarts", [])
@@ -168,18 +197,17 @@ def draw(docs: Path) -> Path:
     return page(docs, "stability", "environment/run python3 -m benchmarks.stability", globals() | names)
 
 
-def main(given: Sequence[str] | None = None) -> int:
-    """Run what is missing, keep its numbers and draw the page."""
-    asked = parser(__doc__, "stability")
-    asked.add_argument("--part", choices=("single", "random"), help="run this part alone, and keep the other's numbers")
-    args = asked.parse_args(given)
+def compute(args: argparse.Namespace) -> None:
+    """Run what is missing and keep its numbers."""
     for part, found in (("single", lambda: {"runs": single(args)}), ("random", lambda: {"random": random(args)})):
-        if not args.draw and args.part in (None, part):
+        if args.part in (None, part):
             old = kept("stability", args.docs)
             keep("stability", old.numbers | found(), made() if part == "single" else old.made, args.docs)
-    print(draw(args.docs))
-    return 0
+    if args.part == "fingers":
+        old = kept("stability", args.docs)
+        keep("stability", old.numbers | {"fingers": fingers(args)}, old.made, args.docs)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    alone = {"choices": ("single", "random", "fingers"), "help": "run this part alone, and keep the other's numbers"}
+    sys.exit(main(__doc__, compute, draw, out="stability", part=alone))

@@ -6,8 +6,7 @@ an ellipse of semi-axes a and b (Johnson, Contact Mechanics, 1985, sec. 4.3, doi
 .. math:: a = \sqrt{2 R_x \delta}, \quad b = \sqrt{2 R_z \delta}, \qquad F = \tfrac12 \pi k a b\, \delta, \qquad
           A = \pi a b.
 
-A slice bears :math:`\frac23 k\, 2a\, \delta`. Tilted by a slope theta, the parabola along the axis is lowest at
-:math:`z = -\theta R_z`, and the same about that place: delta counts from where it touches first.
+A slice bears :math:`\frac23 k\, 2a\, \delta`. A sphere is the same at any tilt.
 """
 
 import numpy as np
@@ -17,7 +16,7 @@ from fingerpad.scene.parameters import Slices
 from fingerpad.slices.total import at_indentation, profile
 from fingerpad.slices.trace import Trace
 
-_R_X, _R_Z, _K, _DEPTH, _TILT = 7e-3, 28e-3, 1e7, 0.8e-3, 0.05
+_R_X, _R_Z, _K, _DEPTH, _TILT = 7e-3, 28e-3, 1e7, 0.8e-3, 0.5
 _PARTS = 48
 
 
@@ -38,22 +37,26 @@ def _trace() -> Trace:
 
 
 def foundation(small: bool) -> list[Row]:
-    """Force, gross area and place of the sum, level and tilted."""
+    """Force and gross area of the sum; of a sphere, level and tilted."""
     a, b = (np.sqrt(2 * radius * _DEPTH) for radius in (_R_X, _R_Z))
     force, area = np.pi / 2 * _K * a * b * _DEPTH, np.pi * a * b
-    why, mesh, rows = "the rule's error at an edge whose width begins as a root", f"{_PARTS} slices", []
-    for tilt in (0.0, _TILT):
-        finger = profile(Slices(radius=_R_Z, tilt=tilt))
-        found, words = at_indentation(finger, _trace(), _DEPTH, _PARTS), f", tilted by {tilt:g}"
-        words = words if tilt else ""
-        rows += [
-            Row(f"force (N){words}", found.totals["f_ext"], force, 1e-6, why, mesh),
-            Row(f"gross area (mm²){words}", 1e6 * found.totals["gross_area"], 1e6 * area, 1e-6, why, mesh),
-        ]
-    place = float(found.thickness @ (found.z * found.columns["f_ext"])) / found.totals["f_ext"]
+    why, mesh = "the rule's error at an edge whose width begins as a root", f"{_PARTS} slices"
+    found, level, tilted = (
+        at_indentation(profile(each), _trace(), _DEPTH, _PARTS)
+        for each in (
+            Slices(radius=_R_Z),
+            Slices(radius=_R_X, length=2 * _R_X, shape="ellipsoid"),
+            Slices(radius=_R_X, length=2 * _R_X, shape="ellipsoid", tilt=_TILT),
+        )
+    )
+    rows = [("force (N)", "f_ext", 1.0), ("gross area (mm²)", "gross_area", 1e6)]
+    known = zip(rows, (force, area), strict=True)
     return [
-        *rows,
-        Row(f"centre of the force (mm), tilted by {_TILT:g}", 1e3 * place, -1e3 * _TILT * _R_Z, 1e-6, why, mesh),
+        *(Row(name, c * found.totals[key], c * of, 1e-6, why, mesh) for (name, key, c), of in known),
+        *(
+            Row(f"{name}, sphere tilted by {_TILT:g}", c * tilted.totals[key], c * level.totals[key], 1e-9, why, mesh)
+            for name, key, c in rows
+        ),
     ]
 
 

@@ -153,7 +153,7 @@ def with_errors(
     estimates, found = estimate.estimates(), dict(path)
     for name, kept in estimate.base.states.items():
         if name in found:
-            mesh, penalty = (errors_of(name, each) for each in (estimates, estimate.penalty))
+            mesh, penalty = (_errors_of(name, each) for each in (estimates, estimate.penalty))
             whole = {key: value + abs(penalty.get(key, 0.0)) for key, value in mesh.items()}
             own, springs = _of_outputs(estimate, name, outputs)
             error = whole | {key: value + abs(springs.get(key, 0.0)) for key, value in own.items()}
@@ -187,7 +187,7 @@ def _of_outputs(estimate: Estimate, name: str, outputs: Sequence[Output]) -> tup
     return mesh, penalty
 
 
-def errors_of(name: str, changes: Mapping[str, float]) -> dict[str, float]:
+def _errors_of(name: str, changes: Mapping[str, float]) -> dict[str, float]:
     """Return the changes of a named state's quantities, of those by key; densities at receptors are left out."""
     known = {field.name for field in fields(Errors)}
     return {k: v for key, v in changes.items() if (k := key.removeprefix(f"{name}_")) in known and k != key}

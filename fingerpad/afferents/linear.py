@@ -42,7 +42,7 @@ which were fitted by Saal et al. (2017), doi 10.1073/pnas.1704856114, and are no
 
 
 @dataclass(frozen=True)
-class LinearFilter:
+class _LinearFilter:
     """The filter of a class."""
 
     k: tuple[float, ...]
@@ -83,9 +83,9 @@ class LinearFilter:
 
 
 FILTERS = {
-    "SA1": LinearFilter((0.205,), 8, 10, 3800, 0.096, 100),
-    "RA1": LinearFilter((0.2316, 0.00312), 60, 80, 44000),
-    "PC": LinearFilter((0.0, 0.12782, 0.00111), 80, 220, 360),
+    "SA1": _LinearFilter((0.205,), 8, 10, 3800, 0.096, 100),
+    "RA1": _LinearFilter((0.2316, 0.00312), 60, 80, 44000),
+    "PC": _LinearFilter((0.0, 0.12782, 0.00111), 80, 220, 360),
 }
 
 

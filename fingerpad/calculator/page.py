@@ -212,7 +212,7 @@ def _defaults() -> str:
 
 # -- presets ---------------------------------------------------------------------------------------------
 @dataclass(frozen=True)
-class Preset:
+class _Preset:
     """Values of some fields."""
 
     group: str
@@ -225,11 +225,11 @@ class Preset:
 
 _THICK = "Assumption: a common thickness; relative permittivity of handbooks."
 SCREENS = (
-    Preset("Screen", "default", {"electric.d_i": 1e-6, "electric.eps_i": 3.9}, "The screen of the paper."),
-    Preset("Screen", "silicon dioxide, 0.2 µm", {"electric.d_i": 0.2e-6, "electric.eps_i": 3.9}, _THICK),
-    Preset("Screen", "aluminium oxide, 1 µm", {"electric.d_i": 1e-6, "electric.eps_i": 9.0}, _THICK),
-    Preset("Screen", "parylene C, 5 µm", {"electric.d_i": 5e-6, "electric.eps_i": 3.1}, _THICK),
-    Preset("Screen", "polyester film, 12 µm", {"electric.d_i": 12e-6, "electric.eps_i": 3.2}, _THICK),
+    _Preset("Screen", "default", {"electric.d_i": 1e-6, "electric.eps_i": 3.9}, "The screen of the paper."),
+    _Preset("Screen", "silicon dioxide, 0.2 µm", {"electric.d_i": 0.2e-6, "electric.eps_i": 3.9}, _THICK),
+    _Preset("Screen", "aluminium oxide, 1 µm", {"electric.d_i": 1e-6, "electric.eps_i": 9.0}, _THICK),
+    _Preset("Screen", "parylene C, 5 µm", {"electric.d_i": 5e-6, "electric.eps_i": 3.1}, _THICK),
+    _Preset("Screen", "polyester film, 12 µm", {"electric.d_i": 12e-6, "electric.eps_i": 3.2}, _THICK),
 )
 """Coatings of screens."""
 

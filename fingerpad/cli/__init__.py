@@ -21,6 +21,8 @@ COMMANDS = {
     "sweep": "a scene over values of its keys: a table; a stopped sweep continues, and no run is repeated",
     "report": "a run or a sweep as one HTML file; a run's animation or spikes; the closed form as a page with sliders",
     "compare": "tables of measurements beside a run or a sweep: misfit as a ratio, picture",
+    "uncertainty": "what the spread of friction comes from: people, rough contact, friction law, coating; ranked",
+    "calibrate": "values of keys of a scene by a table of measurements on fingers: regions, evidence for laws, report",
     "check": "what a run contains, omits and costs, with a picture of its mesh, or the mesh for gmsh; solves nothing",
     "solve": "the voltage, coating or other key at which friction has a given value, by the closed form, at once",
     "drive": "friction over the period of an alternating voltage, its spectrum, and whether it is felt, in a second",

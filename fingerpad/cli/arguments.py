@@ -85,6 +85,11 @@ class Parser(argparse.ArgumentParser):
                 pair: dict[str, Any] = {"nargs": 2, "metavar": ("X", "Y")} if key.allowed.startswith("list") else {}
                 self.add_argument(f"--{key.name.removeprefix(table)[1:]}", **pair, help=key.meaning)
 
+    def add_heads(self) -> None:
+        """Add the option that names columns of tables of measurements, which :func:`heads_of` reads."""
+        words = "a column of the tables by the name and unit it has here, as 'Fn=force (N)'; 'Fn=' leaves it out"
+        self.add_argument("--column", action="append", default=[], metavar="HEAD=NAME", help=words)
+
     def add_out(self, default: str, what: str, quiet: str = "") -> None:
         """Add the folder that results go to, and ``--quiet`` where the command prints something alone with it."""
         words = f"{what} (default: {default})"
@@ -146,6 +151,21 @@ class Parser(argparse.ArgumentParser):
         instead = _instead(word, self._option_string_actions, petsc)
         what = "is not an option" if word.startswith("-") or not word else "is a word too many"
         raise SceneError(f"{clip(word) or 'an empty text'} {what}; {instead}")
+
+
+def heads_of(args: argparse.Namespace) -> dict[str, str | None]:
+    """Return names of this program by heads of tables, of the option of :meth:`Parser.add_heads`.
+
+    Raises:
+        SceneError: one without an equals sign.
+    """
+    found = dict[str, str | None]()
+    for text in args.column:
+        head, equals, name = text.rpartition("=")
+        if not equals:
+            raise SceneError(f"--column is {clip(repr(text))}; it must be HEAD=NAME, such as 'Fn=force (N)'")
+        found[head] = name
+    return found
 
 
 def scene_of(args: argparse.Namespace, meshed: bool = True) -> Scene:

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fingerpad.cli import output
-from fingerpad.cli.arguments import Parser, echo, path
+from fingerpad.cli.arguments import Parser, echo, heads_of, path
 from fingerpad.results.quantities import Output
 from fingerpad.results.states import WORDS
-from fingerpad.scene.messages import SceneError, clip, ends
+from fingerpad.scene.messages import clip, ends
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -35,8 +35,7 @@ def main(argv: Sequence[str]) -> int:
     """Compare tables of measurements with results; return the exit code."""
     parser = Parser("compare", _EXAMPLES)
     parser.add_argument("tables", nargs="+", type=path, metavar="TABLE", help="CSV with names and units in its header")
-    words = "a column of the tables by the name and unit it has here, as 'Fn=force (N)'; 'Fn=' leaves it out"
-    parser.add_argument("--column", action="append", default=[], metavar="HEAD=NAME", help=words)
+    parser.add_heads()
     parser.add_argument("--state", metavar="STATE", help="uncharged, charged or full slip, if the tables name none")
     words = "folders of runs, or the folder of a sweep over force, voltage or both"
     where = {"dest": "results", "metavar": "DIR", "help": words}
@@ -45,12 +44,7 @@ def main(argv: Sequence[str]) -> int:
     args = parser.read(argv)
     from fingerpad.measurements import compare, table  # pandas
 
-    columns = dict[str, str | None]()
-    for text in args.column:
-        head, equals, name = text.rpartition("=")
-        if not equals:
-            raise SceneError(f"--column is {clip(repr(text))}; it must be HEAD=NAME, such as 'Fn=force (N)'")
-        columns[head] = name
+    columns = heads_of(args)
     measured = [table.read(file, columns, args.state) for file in args.tables]
     known = [compare.computed(args.results, each) for each in measured]
     compared = [compare.comparison(*pair) for pair in zip(measured, known, strict=True)]

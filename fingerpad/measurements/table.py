@@ -15,8 +15,18 @@ neither is compared.
 A table with a column in newtons, or of an area, is of a whole finger; without one it is of a cross-section, in N/m.
 ``force`` and ``voltage`` are conditions, each optional. One more column is the quantity, and ``spread`` is its standard
 deviation, which a row may lack. Others are ignored.
+
+**Several quantities** (:func:`observations`) are columns of one table of whole fingers, whose cells may be empty:
+
+    participant, force (N), voltage (Vpp), friction force (N), friction force spread (N), gross area (mm^2)
+    1, 0.5, 200, 0.142, 0.004, 93
+    2, 0.5, 200, 0.171, , 104
+
+``QUANTITY spread`` is of one of them, ``spread`` of all others. Further conditions are the ``frequency`` of a drive and
+a ``participant``, a name. A column without a meaning here is refused.
 """
 
+import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -41,6 +51,12 @@ _QUANTITIES = {  # key of the result and SI unit: of a cross-section, and of a w
     "contact area": (_NONE, ("contact_area", "m^2")),
     "depth": (("depth", "m"), ("indentation", "m")),  # the way down of the bone
 }
+OBSERVED = {of: whole[1] for of, (_, whole) in _QUANTITIES.items() if whole != _NONE and of != "attraction"} | {
+    "share": "1", "air gap": "m", "threshold ratio": "1"
+}  # fmt: skip
+"""Quantities of a table of several and their SI units. Share: contact over gross area. Air gap: at the finger's centre.
+Threshold ratio: voltage at the threshold of detection of a sine of the row's frequency, over that of 120 Hz."""
+_GIVEN = {"force": "N", "voltage": "V", "frequency": "Hz"}
 _STATES = {"uncharged": "uncharged", "charged": "charged", "full slip": "full_slip"}  # names in results
 _NAMES = (*_CONDITIONS, *_QUANTITIES, "spread")
 _PERCENT = ("%", "percent")
@@ -132,6 +148,73 @@ def read(
     return Measured(name, about, _STATES[wanted], quantity, whole, measured, left, turned, path)
 
 
+@dataclass(frozen=True, eq=False)
+class Observations:
+    """A table of several quantities of whole fingers, in SI units."""
+
+    name: str
+    """Its file, shortened for messages."""
+    state: str
+    """Of all quantities but friction, a name of :data:`fingerpad.results.states.STATES`."""
+    rows: pd.DataFrame
+    """A row for each cell with a value: ``line``, ``participant`` (empty without one), ``force``, ``voltage`` and
+    ``frequency`` (NaN where they are not given), ``quantity``, ``measured`` and ``spread``, relative to the value (NaN
+    without one)."""
+
+
+def observations(table: str | Path | pd.DataFrame, columns: Mapping[str, str | None] | None = None) -> Observations:
+    """Return the quantities of a table of whole fingers; arguments are those of :func:`read`.
+
+    Raises:
+        SceneError: what is wrong in the table, with line and column.
+    """
+    refuse_type("table", table, str | Path | pd.DataFrame, "a DataFrame of pandas, or the path of a CSV file")
+    name = "the table" if isinstance(table, pd.DataFrame) else ends(table)
+    try:
+        heads, about, _ = _of_frame(table) if isinstance(table, pd.DataFrame) else _of_file(table)
+        state = about.get("state", "full slip").lower().replace("_", " ")
+        if state not in _STATES:
+            raise ValueError(f"has the state {show(state)}; it must be one of {', '.join(_STATES)}")
+        names = {*_GIVEN, *OBSERVED, "participant", "spread", *(f"{of} spread" for of in OBSERVED)}
+        given = {head.strip(): of or "" for head, of in (columns or {}).items()}
+        used = _named(heads, given, sorted(names))
+        left = {column.head for column in used.values()} | {head for head, of in given.items() if not of}
+        if unknown := next((column.head for column in heads if column.head not in left), ""):
+            raise ValueError(
+                f"has the column {show(unknown)}, whose meaning is not known; name it by columns, as in "
+                f"{{{show(unknown)}: 'friction force (N)'}}, or leave it out by {{{show(unknown)}: ''}}"
+            )
+        observed = [of for of in used if of in OBSERVED]
+        if not observed or "force" not in used:
+            raise ValueError(
+                f"has {'no force' if observed else 'no quantity'}; it must have 'force (N)' and one of "
+                f"{', '.join(OBSERVED)}"
+            )
+        rows = pd.concat([_observed(used, of) for of in observed]).sort_values("line", kind="stable", ignore_index=True)
+    except ValueError as error:
+        raise SceneError(f"{name} {error}") from None
+    return Observations(name, _STATES[state], rows)
+
+
+def _observed(used: Mapping[str, Column], of: str) -> pd.DataFrame:
+    """Return the cells of one quantity that have a value, with their conditions."""
+    values = _numbers(used[of], OBSERVED[of], optional=True).abs()
+    rows = pd.DataFrame({"line": values.index, "measured": values.to_numpy(), "quantity": of})
+    for condition, si in _GIVEN.items():
+        rows[condition] = _numbers(used[condition], si).to_numpy() if condition in used else math.nan
+    who = used["participant"].cells if "participant" in used else None
+    if who is not None:
+        used["participant"].refuse(who == "", "a name")
+    rows["participant"] = "" if who is None else who.to_numpy()
+    spread = used.get(f"{of} spread") or used.get("spread")
+    if spread is not None:
+        found = _numbers(replace(spread, name="spread"), OBSERVED[of], optional=True).to_numpy()
+        rows["spread"] = found if spread.unit in _PERCENT else found / rows.measured
+    else:
+        rows["spread"] = math.nan
+    return rows[rows.measured.notna()]
+
+
 def _of_frame(table: pd.DataFrame) -> tuple[list[Column], dict[str, str], str]:
     """Return the columns of a DataFrame, whose index has some where it has names, and its facts."""
     if any(name is not None for name in table.index.names):
@@ -152,7 +235,7 @@ def _of_file(file: str | Path) -> tuple[list[Column], dict[str, str], str]:
     return [column for column in found.columns if column.head], about, ends(file, _LONGEST_PATH)
 
 
-def _named(heads: Sequence[Column], given: Mapping[str, str]) -> dict[str, Column]:
+def _named(heads: Sequence[Column], given: Mapping[str, str], names: Sequence[str] = _NAMES) -> dict[str, Column]:
     """Return columns by their names in this program, with their units."""
     found = dict[str, Column]()
     if unknown := given.keys() - {column.head for column in heads}:
@@ -161,9 +244,9 @@ def _named(heads: Sequence[Column], given: Mapping[str, str]) -> dict[str, Colum
     for column in heads:
         of, unit = parts(given[column.head]) if column.head in given else (column.name, column.unit)
         of, unit, cells = of.lower(), unit or column.unit, column.cells
-        if of not in _NAMES:
+        if of not in names:
             if of and column.head in given:
-                raise ValueError(f"has {show(of)} for {show(column.head)}; it must be one of {', '.join(_NAMES)}")
+                raise ValueError(f"has {show(of)} for {show(column.head)}; it must be one of {', '.join(names)}")
             continue
         if of in found:
             raise ValueError(f"has two columns with the name {of}; give one, and leave out the other")
@@ -218,8 +301,8 @@ def _refuse_overlooked(used: Mapping[str, Column], ignored: Sequence[Column]) ->
                 )
 
 
-def _numbers(column: Column, si: str) -> "pd.Series[float]":
-    """Return the values of a column in SI units; a voltage as the rms value of a sine."""
+def _numbers(column: Column, si: str, optional: bool = False) -> "pd.Series[float]":
+    """Return the values of a column in SI units, NaN of optional empty cells; a voltage as the rms value of a sine."""
     of, unit, rms = column.name, column.unit, 1.0
     if not unit:
         example = f"write '{of} ({si})' in the head or by columns, and (1) for a number without"
@@ -229,7 +312,7 @@ def _numbers(column: Column, si: str) -> "pd.Series[float]":
     allowed = {"N/m": "N/m, or in N for a whole finger", "N": "N, as another column is of a whole finger"}
     si = "1" if of == "spread" and unit in _PERCENT else si
     column = replace(column, unit=unit)
-    values = rms * column.numbers(si, allowed.get(si, "1 or %" if si == "1" else si), of == "spread")
+    values = rms * column.numbers(si, allowed.get(si, "1 or %" if si == "1" else si), optional or of == "spread")
     if of == "voltage":
         return values.abs()
     if of.startswith("friction"):

@@ -34,6 +34,7 @@ from geometry.mesh import TaggedMesh, load
 from geometry.meshfile import file
 from geometry.units import to_si
 from variational import body as setup
+from variational.attraction.adhesion import Adhesion
 from variational.attraction.electroadhesion import ELECTROSTATIC
 from variational.caution import Caution
 from variational.contact.formulation import Formulation
@@ -88,6 +89,7 @@ class Body(StatePrinted):
         contact: Formulation = Penalty(),  # noqa: B008
         friction: Friction | float | None = None,
         roughness: Closure | None = None,
+        adhesion: Adhesion | None = None,
         h_0: float | None = None,
         element: str = "P2",
         force_scale: float = 1.0,
@@ -104,6 +106,7 @@ class Body(StatePrinted):
             contact: how contact enters the weak form.
             friction: law of friction; a number is the coefficient of Coulomb's.
             roughness: the microscale, from pressure to air gap; without it there is no voltage.
+            adhesion: attraction without a voltage.
             h_0: effective insulator thickness (m); by default that of ``roughness``.
             element: a name of :data:`variational.element.ELEMENTS`.
             force_scale: force (N/m) in which residuals are measured.
@@ -135,7 +138,7 @@ class Body(StatePrinted):
             raise ValueError("roughness has no h_0; give Body the effective insulator thickness, h_0=... in m")
         if roughness is not None:
             refuse_thickness(roughness, h_0)
-        law = Interface(contact, friction, h_0, ELECTROSTATIC if roughness else None)
+        law = Interface(contact, friction, h_0, ELECTROSTATIC if roughness else None, adhesion=adhesion)
         self._closure = roughness
         made = setup.Body(
             self.mesh, _solids(self.mesh, material), law, roughness, element=element, force_scale=force_scale,
@@ -283,7 +286,7 @@ class Body(StatePrinted):
         balance = self._book.step(self._made.continuation.surface_state, solver.bone, solver.reaction, self._d_eq)
         record = step_record(self._made.continuation, balance, solver.imbalance(), attempt)
         state = self._present(record)
-        if not (state.ridges_in_contact or state.voltage):
+        if not (state.ridges_in_contact or state.voltage or self.problem.interface.adhesion):
             where, formulation = f"step {state.step} ({self._load})", self.problem.interface.formulation
             refuse_strained(where, record, self.states, solver.force_scale, formulation)
         self.energy = Energy(

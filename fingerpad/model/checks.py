@@ -3,7 +3,7 @@
 Ridges far from the contact have coarse elements and no contact forces. Which ones these are follows from a scene only
 roughly. So each accepted step is checked: the last ridge on either side that can touch must not, and skin beyond must
 stay clear of the screen. The last ridge touches long before the next one would: by the outline's curvature that one
-is a tenth of a millimetre higher. Where skin comes near the screen, the run starts again with more ridges.
+is a tenth of a millimetre higher. Where skin comes near the screen, the path goes on with more ridges.
 
 Stability is examined once a state. Full slip is steady if the forces stay the same over a further 0.2 mm of sliding,
 since the screen is uniform.

@@ -142,7 +142,7 @@ def assembled(
     body = Body(
         tagged,
         {tag: solid for tag, solid in model.solids.items() if tag in layers},
-        Interface(model.contact, model.friction, model.h_0, attraction, model.share),
+        Interface(model.contact, model.friction, model.h_0, attraction, model.share, model.adhesion),
         model.closure,
         element=numerics.element,
         points=numerics.quadrature_points,

@@ -30,6 +30,7 @@ from fingerpad.model import drive_loads
 from fingerpad.results.terminal import about
 from fingerpad.scene import Numerics, Scene
 from fingerpad.scene.controls import ends_of
+from fingerpad.scene.materials import adheres
 from fingerpad.scene.messages import SceneError, qualify
 from fingerpad.scene.viscosity import viscous_layers
 from geometry import sizing
@@ -140,6 +141,7 @@ class FingerModel:
         contact: formulation of the contact.
         by_gap: whether a ridge's length is that of a small gap, and not that under contact pressure.
         friction: law of friction; None without friction.
+        adhesion: law of adhesion without a voltage; None without.
         closure: the microscale; None where there is never a voltage.
         h_0: effective insulator thickness (m).
         loads: to reach one after the other, with voltages of Eq. 3.
@@ -164,6 +166,7 @@ class FingerModel:
         self.contact: Formulation = scene.contact.law
         self.by_gap = scene.contact.length == "gap"
         self.friction = scene.friction_law()
+        self.adhesion = scene.adhesion if adheres(scene.adhesion) else None
         self.closure = scene.closure() if options.voltage else None
         self.h_0 = scene.h_0
         self.loads = drive_loads.loads(scene)

@@ -95,8 +95,7 @@ class Simulation:
         Raises:
             StepFailed: a load that could not be reached; everything accepted before was reported.
         """
-        loads = self.model.loads
-        first = self._loads_done
+        loads, first = self.model.loads, self._loads_done
         self._begin_half()
         if self._half is not None and self._half_kept is not None:
             checkpoint.put(self._half.path, self._half_kept)
@@ -191,12 +190,12 @@ class Simulation:
 
     def carried(self) -> dict[str, Any]:
         """Return all that a simulation on a wider mesh needs to go on, and free the memory of this one; collective."""
-        finger, solver = self.finger, self.finger.solver
-        snapshot = take_snapshot(finger.coupling, finger.continuation.surface_state)
+        solver, path = self.finger.solver, self.finger.continuation
+        snapshot = take_snapshot(path.coupling, path.surface_state)
         for path in self._paths().values():
             path.solver.iteration.free()
         way = {name: getattr(self._path, name) for name in _WAY}
-        return {"carried": (snapshot, way, solver.counts, solver.timings)} | self._progress()
+        return self._progress() | {"carried": (snapshot, way, solver.counts, solver.timings)}
 
     def _progress(self) -> dict[str, Any]:
         return {
@@ -212,8 +211,7 @@ class Simulation:
             states: accepted until there.
 
         Raises:
-            OtherBody: its mesh was another one; on every rank.
-            StepFailed: the state that was carried has no equilibrium on this mesh.
+            OtherBody, StepFailed: its mesh was another one, or its state has no equilibrium on this wider one.
         """
         self._loads_done, self._x, self._began, self._passed = kept["load"]
         if "carried" in kept:
@@ -232,8 +230,7 @@ class Simulation:
         for each in self._paths().values():
             restore(snapshot, each.coupling)
         path.re_equilibrate("state on a wider mesh")
-        vars(path).update(way)
-        path.resumes = True
+        vars(path).update(way | {"resumes": True})
         if self._half is not None:
             self._half.show()
         self.finger.solver.counts.add(counts)
@@ -335,7 +332,7 @@ class Simulation:
         if not target.slips:
             energy = self.energy.step(*finger.surface_and_bone())
             record = step_record(finger.continuation, energy, imbalance, attempt)
-        if record and not (loads.f_contact.any() or finger.voltage):
+        if record and not (loads.f_contact.any() or finger.voltage or finger.problem.interface.adhesion):
             where = f"step {finger.continuation.steps} ({self._load})"
             formulation = finger.problem.interface.formulation
             refuse_strained(where, record, self.states, finger.solver.force_scale, formulation)

@@ -51,6 +51,7 @@ def contact_state(
         mu_app=f_t / f_ext if f_ext > BALANCED * solver.force_scale else math.nan,
         f_contact=float(loads.f_contact.sum()),
         f_electrostatic=float(loads.f_attraction.sum()),
+        f_adhesion=math.nan if path.problem.interface.adhesion is None else float(loads.f_adhesion.sum()),
         ridges_in_contact=int((loads.length > 0).sum()),
         contact_length=float(loads.length.sum()),
         p_max=float(path.observer.highest_pressures(path.surface_state).max()),
@@ -161,7 +162,8 @@ def refuse_unbalanced(
         remedy += f"try a numerics.tolerance below {tolerance:g}, and no PETSc option that ends a solve earlier"
     if not left <= BALANCED:
         raise StepFailed(f"{where}: a force of {left * scale:.4g} N/m is left at a node; {remedy}")
-    screen = np.array([float(loads.f_friction.sum()), float((loads.f_contact - loads.f_attraction).sum())])
+    down = loads.f_attraction + loads.f_adhesion
+    screen = np.array([float(loads.f_friction.sum()), float((loads.f_contact - down).sum())])
     worst = int(np.argmax(np.abs(screen - bone)))
     if not abs(screen[worst] - bone[worst]) <= BALANCED * scale:
         raise StepFailed(
@@ -173,7 +175,7 @@ def refuse_unbalanced(
 def refuse_strained(
     where: str, record: StepRecord, before: Iterable[ContactState], scale: float, formulation: Formulation
 ) -> None:
-    """Refuse a state that stores energy although nothing touches and there is no voltage, of a step and load in words.
+    """Refuse a state that stores energy although nothing touches and attracts, of a step and load in words.
 
     Some formulations have such equilibria (:attr:`~variational.contact.formulation.Formulation.unloaded_energy`). They
     come where the method is not coercive, and Newton's method may go on to them while the body is loaded.
@@ -198,7 +200,7 @@ def broken(slip: ContactState | None, error: float, mu_0: float | None) -> str:
     """
     if slip is None:
         return ""
-    balance = slip.f_contact - slip.f_electrostatic - slip.f_ext
+    balance = slip.f_contact - slip.f_attraction - slip.f_ext
     if abs(balance) > error:
         return (
             f"the forces at full slip are out of balance by {balance:.3g} N/m, more than the {error:.3g} N/m that the "

@@ -9,7 +9,8 @@ times the share of the attraction in the contact force:
 
 .. math:: \frac{\Delta \mu_{app}}{\mu_{app}} = \frac{f_{el}}{f_{ext} + f_{el}} \, \frac{\Delta f_{el}}{f_{el}}.
 
-It vanishes without voltage. :func:`data` is the same table for the calculator, whose ``errors.js`` reads it.
+It vanishes without voltage. Of another law of friction it is at least that of the length in contact. :func:`data` is
+the same table for the calculator, whose ``errors.js`` reads it.
 """
 
 import json
@@ -27,6 +28,7 @@ from fingerpad.scene.fingers import PAPER
 from fingerpad.scene.keys import every
 from fingerpad.scene.messages import show
 from fingerpad.scene.reading import flat
+from fingerpad.scene.remarks import coefficient
 from fingerpad.scene.scene import Scene
 from variational.caution import Caution
 from variational.state import ContactState
@@ -159,7 +161,6 @@ def _given(scene: Scene, pull: float) -> dict[str, Any]:
     given.pop("f_ext" if scene.force is not None else "force", None)
     if scene.drive is None:
         given = {key: value for key, value in given.items() if not key.startswith(_LOSSES)}
-        given |= {key: value for key, value in _default().items() if key.startswith(_LOSSES)}
     return given
 
 
@@ -169,6 +170,7 @@ def _outside(given: Mapping[str, Any], region: Region) -> Iterator[Outside]:
     if "force" in given and "force" not in region.ranges:
         yield Outside("force", _span(given["force"], given["force"], units["force"]), "sections alone")
     tables = (key for key in {**default, **given} if key.partition(".")[0] in _TABLES)
+    tables = (key for key in tables if key in given or not key.startswith(_LOSSES))
     for key in dict.fromkeys([*region.ranges, *tables]):
         value, unit, table = given.get(key), units.get(key, ""), key.partition(".")[0]
         ends: tuple[Any, Any] = region.ranges.get(key, (default.get(key),) * 2)
@@ -229,6 +231,8 @@ def at_full_slip(scene: Scene, f_electrostatic: float) -> dict[str, float]:
         return {}
     known = region.errors[name]
     share = known["f_electrostatic"] * pull / (1 + pull)
+    if coefficient(scene) is None:  # a shear stress on the length in contact
+        share = max(share, known["contact_length"])
     return {**known, "mu_app": share, "f_t": share}
 
 

@@ -51,7 +51,6 @@ from geometry.profiles import Profiles
 from variational.attraction.cylinder import Cylinder, NoEquilibriumError, RidgeState
 from variational.attraction.tip import Power, Round, Tip, kernel
 from variational.caution import Caution
-from variational.contact.friction import Friction
 from variational.state import ContactState, Errors
 
 if TYPE_CHECKING:
@@ -61,7 +60,6 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 SHEAR = 10.0
 """What the modulus of a ridge gains, over the shear stress beyond that of the default friction coefficient."""
-_ROLLS, _LEAST_LEFT = 20, 0.4  # iterations, and the least part of the contact that may be left
 _FLAT = 0.01
 """Of a ridge's height: how far its middle may be below its crests."""
 
@@ -190,10 +188,9 @@ def _over_forces(
 ) -> list[tuple[ContactState, RidgeState]]:
     """Return the states of :func:`over_forces`, and those of a ridge."""
     own, force, law = pressed or press.of(scene), np.array(f_ext), scene.friction_law()
-    rolls = state == "full_slip" and law is not None and isinstance(own, Press) and not own.slid
     length = own.length(f_ext, state) if isinstance(own, Press) else np.array([each.contact_length for each in own])
 
-    def solved(left: Any) -> tuple[NDArray[np.int_], list[RidgeState]]:
+    def solved(left: Any = 1.0) -> tuple[NDArray[np.int_], list[RidgeState]]:
         """Return how many ridges are in contact, and their states, with a part of the press's contact left."""
         if isinstance(own, Press):
             ridges = own.ridge_count(f_ext, state, left)
@@ -201,14 +198,13 @@ def _over_forces(
             ridges = np.array([each.ridges_in_contact for each in own])
         return ridges, _ridges(scene, state, force / ridges, left * length / ridges, tips, shear)
 
-    if rolls and law is not None:
-        left = _left(law, force, np.zeros_like(force), length)
+    if state == "full_slip" and law is not None and isinstance(own, Press) and not own.slid:
+        left = own.left(law.limit, force, 0.0, length)
         ridges, found = solved(left)
-        attraction, own_length = (
-            ridges * [getattr(ridge, key) for ridge in found] / left for key in ("f_attraction", "length")
-        )
-        left = _left(law, force, attraction, own_length)
-    ridges, found = solved(left if rolls else 1.0)
+        pulled, touching = np.array([(ridge.f_attraction, ridge.length) for ridge in found]).T * ridges / left
+        ridges, found = solved(own.left(law.limit, force, pulled, touching))
+    else:
+        ridges, found = solved()
     states = []
     for each, count, ridge in zip(f_ext, ridges, found, strict=True):
         n = int(count)
@@ -221,18 +217,6 @@ def _over_forces(
         under = scene.model_copy(update={"f_ext": float(each)})
         states.append((reduced_state(under, contact, state == "full_slip"), ridge))
     return states
-
-
-def _left(law: Friction, force: Array, attraction: Array, length: Array) -> Array:
-    """Return the part of the contact of a press that is left at full slip (:mod:`fingerpad.reduced.press`).
-
-    Attraction (N/m) and length (m) are those of the whole contact, and grow with the part that is left.
-    """
-    left = np.ones_like(force)
-    for _ in range(_ROLLS):
-        f_t = np.array([law.resultant(*each) for each in zip(force + left * attraction, left * length, strict=True)])
-        left = np.maximum(1 - f_t**2 / (force * press.ROLL), _LEAST_LEFT)
-    return left
 
 
 def _ridges(scene: Scene, state: str, forces: Array, lengths: Array, tips: float, shear: float) -> list[RidgeState]:

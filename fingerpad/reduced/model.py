@@ -10,6 +10,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from fingerpad.results.quantities import Output
+from fingerpad.scene.materials import adheres
 from fingerpad.scene.messages import SceneError, show
 from fingerpad.scene.viscosity import viscous_layers
 from fingerpad.slices import traces
@@ -179,10 +180,10 @@ def reduced_state(scene: "Scene", contact: Mapping[str, float], slips: bool) -> 
 
 
 def check_supported(scene: "Scene", model: str) -> None:
-    """Refuse a scene whose loads are not press, charge and slide, or whose finger has a mesh of its own or is viscous.
+    """Refuse a scene whose loads are not press, charge and slide, or whose finger has a mesh, is viscous or adheres.
 
     Raises:
-        SceneError: it has a history, a mesh, or viscous layers.
+        SceneError: it has a history, a mesh, viscous layers or adhesion.
     """
     why, timeless = "", f"the model '{model}' has no time, so use the model 'full' with loads over time, or"
     law = scene.friction_law()
@@ -190,6 +191,8 @@ def check_supported(scene: "Scene", model: str) -> None:
         why = f"{viscous[0]}.viscosity is given; {timeless} leave the viscosity out"
     elif law is not None and law.memory is not None:
         why = f"friction is {type(law).__name__}; {timeless} another law"
+    elif adheres(scene.adhesion):
+        why = f"adhesion is {scene.adhesion}, which the model '{model}' does not have; use the model 'full'"
     elif scene.geometry.file is not None:
         why = (
             f"geometry.file is {show(scene.geometry.file)}; the model '{model}' answers for fingers of the scene's own "

@@ -16,7 +16,7 @@ hypercube: each spread has the middles of as many equal parts, in the order of a
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cache, cached_property
+from functools import cache, cached_property, partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -73,26 +73,51 @@ class Fingers:
         """
         size, stiffness = self._factor("size"), self._factor("stiffness")
         f_ext = self.slip.f_ext * (size * stiffness * (size**2 * stiffness) ** -POWER if self.whole else size**0)
-        length, ridges = self._contact(f_ext / (size * stiffness))
-        tip, forces = tip_of(self.scene.geometry, length / ridges).scaled(size), f_ext / ridges
-        ridge = Cylinder(tip, tip.modulus(forces, size * length / ridges), *self._surfaces())
-        every = np.arange(len(forces))
-        parts = np.array_split(every, -(-len(every) // _TOGETHER))
-        found = [each for part in parts for each in self._solved(ridge, forces, part)]
-        p_c, lengths = np.array([(each.p_c, each.length) if each else (np.nan, np.nan) for each in found]).T
-        beyond = np.array([np.inf if law.extrapolates else law.pressures[1] for law in ridge.closure])  # type: ignore[union-attr]
-        mu_app = self._limit(p_c, every) * lengths * ridges / f_ext
-        return np.where(p_c <= beyond, mu_app, np.inf)
+        surfaces, every, similar = self._surfaces(), np.arange(len(f_ext)), f_ext / (size * stiffness)
+        own, left = replace(self._press, roll=size * stiffness * self._press.roll), np.ones_like(f_ext)
+
+        def solved() -> tuple[Array, Array, Array]:
+            """Return contact pressure (Pa), length in contact (m) and attraction (N/m)."""
+            length, ridges = self._contact(similar, left)
+            tip, forces = tip_of(self.scene.geometry, left * length / ridges).scaled(size), f_ext / ridges
+            ridge = Cylinder(tip, tip.modulus(forces, size * left * length / ridges), *surfaces)
+            parts = np.array_split(every, -(-len(every) // _TOGETHER))
+            found = [each for part in parts for each in self._solved(ridge, forces, part)]
+            none = (np.nan,) * 3
+            p_c, lengths, pulled = np.array([(x.p_c, x.length, x.f_attraction) if x else none for x in found]).T
+            return p_c, ridges * lengths, ridges * pulled
+
+        if self._rolls:
+            left = own.left(partial(self._limit, number=every), f_ext, 0.0, size * self._contact(similar, left)[0])
+            _, length, pulled = solved()
+            left = own.left(partial(self._limit, number=every), f_ext, pulled / left, length / left)
+        p_c, length, _ = solved()
+        beyond = np.array([np.inf if law.extrapolates else law.pressures[1] for law in surfaces[1]])
+        return np.where(p_c <= beyond, self._limit(p_c, every) * length / f_ext, np.inf)
 
     def _factor(self, name: str) -> Array:
         return self.factors.get(name, np.ones(len(self.laws)))
 
-    def _contact(self, f_ext: Array) -> tuple[Array, NDArray[Any]]:
-        """Return length (m) and number of ridges in contact of the one finger without voltage, under forces (N/m)."""
-        here = self.uncharged if self.uncharged is not None and self.uncharged.contact_length > 0 else None
-        known = press.of(_default() if here is not None and press.known(self.scene) is None else self.scene)
-        forces = np.append(f_ext, self.slip.f_ext)
-        length, ridges = known.length(forces, "full_slip"), known.ridge_count(forces, "full_slip")
+    @property
+    def _here(self) -> ContactState | None:
+        return self.uncharged if self.uncharged is not None and self.uncharged.contact_length > 0 else None
+
+    @property
+    def _press(self) -> press.Press:
+        return press.of(_default() if self._here is not None and press.known(self.scene) is None else self.scene)
+
+    @property
+    def _rolls(self) -> bool:
+        """Whether friction rolls ridges off, which a contact of the result's own has already."""
+        return self._here is None and not self._press.slid
+
+    def _contact(self, f_ext: Array, left: Array) -> tuple[Array, NDArray[Any]]:
+        """Return length (m) and number of ridges in contact of the one finger without voltage, under forces (N/m).
+
+        Of the ridges a part is left.
+        """
+        here, known, forces = self._here, self._press, np.append(f_ext, self.slip.f_ext)
+        length, ridges = known.length(forces, "full_slip"), known.ridge_count(forces, "full_slip", np.append(left, 1.0))
         if here is not None:
             length = here.contact_length * length / length[-1]
             ridges = np.maximum(np.rint(here.ridges_in_contact * ridges / ridges[-1]), 1).astype(int)

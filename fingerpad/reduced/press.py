@@ -22,7 +22,7 @@ forces, voltages and laws of friction, it is about
 """
 
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import cache
 from hashlib import sha256
@@ -50,6 +50,7 @@ ROLL = 270.0
 """F (N/m)."""
 KNOWN = 0.25
 """Friction coefficient whose shear the contact at full slip has."""
+_ROLLS, _LEAST_LEFT = 20, 0.4  # iterations, and the least part of the contact that may be left
 _TABLES = ("geometry", "materials", "contact")
 _SITES = ("merkel_offset", "meissner_offset", "file", "file_sha256")  # of the geometry, without effect on a press
 _VERSION = 1
@@ -67,6 +68,8 @@ class Press:
     """Ridges in contact, likewise."""
     indentations: Mapping[str, tuple[float, ...]]
     """How far the bone is lowered (m), likewise."""
+    roll: float | Array = ROLL
+    """F (N/m); of similar fingers that are solved for together one of each."""
 
     @classmethod
     def of(cls, kept: Mapping[str, Any]) -> "Press":
@@ -86,7 +89,7 @@ class Press:
     def ridge_count(self, f_ext: ArrayLike, state: str, left: ArrayLike = 1.0) -> NDArray[np.int_]:
         """Return the number of ridges in contact, of which a part is left; arguments of :meth:`length`."""
         found = self.interpolate(f_ext, self.ridges.get(state, self.ridges["charged"]))
-        return np.maximum(np.rint(left * found).astype(int), 1)
+        return np.maximum(np.rint(np.asarray(left) * found).astype(int), 1)
 
     def indentation(self, f_ext: ArrayLike, state: str) -> Array:
         """Return how far the bone is lowered (m), without voltage; arguments of :meth:`length`.
@@ -94,6 +97,21 @@ class Press:
         A voltage of 200 V moves the bone of the default finger at full slip by up to 6 %.
         """
         return self.interpolate(f_ext, self.indentations.get(state, self.indentations["charged"]))
+
+    def left(self, limit: Callable[[Array], Array], force: Array, attraction: Any, length: Array) -> Array:
+        """Return the part of the contact without friction that is left at full slip.
+
+        Args:
+            limit: of friction (Pa), at contact pressures (Pa).
+            force: external forces (N/m).
+            attraction: of the whole contact (N/m), which grows with the part that is left.
+            length: of the whole contact (m), likewise.
+        """
+        part = np.ones_like(force)
+        for _ in range(_ROLLS):
+            f_t = limit(force / (part * length) + attraction / length) * part * length
+            part = np.maximum(1 - f_t**2 / (force * self.roll), _LEAST_LEFT)
+        return part
 
     def lowered(self, states: Iterable[ContactState], state: str) -> list[ContactState]:
         """Return states of one kind with the indentations without voltage."""

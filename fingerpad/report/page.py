@@ -34,7 +34,7 @@ def _environment() -> Environment:
     made = Environment(
         loader=PackageLoader("fingerpad", "report"), autoescape=True, trim_blocks=True, undefined=StrictUndefined
     )
-    made.filters |= {"typeset": typeset, "symbols": _symbols, "sentence": _sentence, "cell": _cell}
+    made.filters |= {"typeset": _typeset, "symbols": _symbols, "sentence": _sentence, "cell": _cell}
     return made
 
 
@@ -60,7 +60,7 @@ def page(template: str, title: str, **values: Any) -> str:
     return str(render("base.html", title=title, body=Markup(body), style=style, script=script))
 
 
-def typeset(words: object) -> Markup:
+def _typeset(words: object) -> Markup:
     """Return words as text of a page: symbols with their subscripts, as d_eq, and no line that breaks in a value."""
     return Markup(_VALUE.sub("\u00a0", SYMBOL.sub(r"\1<sub>\2</sub>", str(escape(words)))))
 
@@ -74,7 +74,7 @@ def _symbols(words: object) -> Markup:
 def _sentence(words: str) -> Markup:
     """Return a sentence with its first part, up to a bracket or a mark, in bold."""
     first = re.split(r"(?=[,;:]| \()", words, maxsplit=1)[0]
-    return Markup(f"<b>{typeset(first[0].upper() + first[1:])}</b>{typeset(words[len(first) :])}.")
+    return Markup(f"<b>{_typeset(first[0].upper() + first[1:])}</b>{_typeset(words[len(first) :])}.")
 
 
 def _cell(value: Any) -> str:
@@ -132,11 +132,8 @@ def recipe(of: Mapping[str, Any], model: str, axes: Mapping[str, list[Any]] | No
         axes: values of each key that is varied; None of a run.
         option: another one of the command.
     """
-    over, lines = axes or {}, list[str]()
-    for key in dict.fromkeys(name.partition("[")[0] for name in changed_keys(of)):  # a list as a whole
-        value = reduce(getitem, key.split("."), of)
-        if value is not None and key != "model" and key not in over:
-            lines.append(f"{key} = {_toml(value)}")
+    over = axes or {}
+    lines = scene_file(of, over)
     lines += ["[sweep]", *(f"{_toml(key)} = {_toml(values)}" for key, values in over.items())] if over else []
     named = "" if model == DEFAULT_MODEL else f"--model {shlex.quote(model)}"
     parts = (
@@ -149,6 +146,16 @@ def recipe(of: Mapping[str, Any], model: str, axes: Mapping[str, list[Any]] | No
     )
     words = " ".join(filter(None, parts))
     return "\n".join(["# mine.toml", *lines, "", "# the command", words] if lines else [words])
+
+
+def scene_file(of: Mapping[str, Any], without: Collection[str] = ()) -> list[str]:
+    """Return the lines of a scene file with the parameters of a scene that are not those of the default one."""
+    lines = list[str]()
+    for key in dict.fromkeys(name.partition("[")[0] for name in changed_keys(of)):  # a list as a whole
+        value = reduce(getitem, key.split("."), of)
+        if value is not None and key != "model" and key not in without:
+            lines.append(f"{key} = {_toml(value)}")
+    return lines
 
 
 def _toml(value: Any) -> str:

@@ -228,7 +228,7 @@ def _titled(column: str, quantity: Output) -> str:
 
 def _chart(table: Table, column: str, title: str, scale: float) -> Any:
     """Return the chart of a column: a curve for each value of all axes but the one along x, which has most numbers."""
-    along, curves = curves_of(table, column)
+    along, curves = _curves_of(table, column)
     numbers = [value for value in table.values()[along] if type(value) in (int, float)]
     names = [] if numbers else [printed(value) for value in table.values()[along]]
     series = []
@@ -241,7 +241,7 @@ def _chart(table: Table, column: str, title: str, scale: float) -> Any:
     )
 
 
-def curves_of(table: Table, column: str) -> tuple[str, dict[str, Sequence[Mapping[str, Any]]]]:
+def _curves_of(table: Table, column: str) -> tuple[str, dict[str, Sequence[Mapping[str, Any]]]]:
     """Return the key along x, and the rows of each curve of a column by the values of the other keys, in words."""
     numbers = {key: [each for each in values if type(each) in (int, float)] for key, values in table.values().items()}
     along = max(table.axes, key=lambda key: len(numbers[key]))

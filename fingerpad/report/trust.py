@@ -151,7 +151,7 @@ def _balance(result: Result) -> Iterator[Finding]:
     state, floor = result.full_slip or result.charged or result.uncharged, result.record.get("force_error")
     if state is None or math.isnan(state.f_contact):
         return
-    left = state.f_contact - state.f_electrostatic - state.f_ext
+    left = state.f_contact - state.f_attraction - state.f_ext
     words = f"Contact force less attraction less external force leaves {left:.1g} N/m of {state.f_ext:.4g} N/m."
     if floor is None:
         yield Finding("balance of forces", GOOD if abs(left) < 1e-3 * abs(state.f_ext) else BAD, words)

@@ -273,7 +273,8 @@ def _finger(whole: "WholeFinger | None") -> Variables:
         found[f"finger_{name}_error"] = ("state",), _column(errors), output.about("estimated error of the ")
     for name, output in (SLICES | own).items():
         along = [None if total is None else total.slices().get(name) for total in totals]
-        found[f"slice_{name}"] = ("state", "slice"), _padded(along), output.about()
+        if any(each is not None for each in along):
+            found[f"slice_{name}"] = ("state", "slice"), _padded(along), output.about()
     centres = [None if total is None else total.centre for total in totals]
     words = "external normal force of the slice that is indented most per metre of finger"
     found["finger_centre"] = ("state",), _column(centres), _about(words, "N/m")

@@ -124,7 +124,8 @@ def _finger(arrays: Arrays, kept: Mapping[str, Any], outputs: Sequence[Output], 
         if np.isnan(arrays["finger_centre"][k]):
             continue
         slices = columns("slice_", k)
-        slices.pop("pressure", None)
+        for follows in ("pressure", "real_over_gross"):
+            slices.pop(follows, None)
         places = slices.pop("z"), slices.pop("thickness"), slices.pop("indentation")
         totals[name] = Total(arrays["finger_indentation"][k], *places, arrays["finger_centre"][k], slices)
         if trace := columns("trace_", k):

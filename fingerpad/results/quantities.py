@@ -198,7 +198,9 @@ STEPS = _listed(
     ("viscous_least", "", "least dissipation of a branch at a point over the largest in the step; < 0: energy made"),
     ("mesh_contact", "m", "contact size of the mesh"),
     ("time", "s", "time since the start of the first load over time"),
-    result="f_ext voltage bone_height mu_app f_t f_electrostatic f_contact contact_length p_max ridges_in_contact",
+    ("f_adhesion", "N/m", "adhesion without a voltage per metre of finger", "adhesion f_ad", 3),
+    result="f_ext voltage bone_height mu_app f_t f_electrostatic f_adhesion f_contact contact_length p_max "
+           "ridges_in_contact",
     given="step load f_ext voltage bone_x",
     found="f_t mu_app f_electrostatic f_contact bone_height ridges_in_contact contact_length p_max",
     load="f_ext bone_height mu_app f_t contact_length f_electrostatic",
@@ -264,8 +266,11 @@ FINGER = _listed(
     ("mu_app", "", "apparent friction coefficient of the whole finger", "apparent friction µ_app", 4),
     ("f_t", "N", "friction force on the whole finger", "friction force F_T", 4),
     ("f_electrostatic", "N", "electrostatic attraction of the whole finger", "attraction F_el", 4),
+    ("f_adhesion", "N", "adhesion of the whole finger without a voltage", "adhesion F_ad", 4),
     ("gross_area", "mm²", "area between the outermost touching ridges of the slices", "gross area", 1),
     ("contact_area", "mm²", "area in contact, of the ridges", "ridge contact area", 2),
+    ("real_over_gross", "", "contact area of the ridges over the gross area", "ridge over gross area", 3),
+    ("shear_stress", "kPa", "friction force over the contact area of the ridges", "shear stress on ridges", 1),
     ("indentation", "mm", "lowering of the bone since the finger first touched", "indentation δ", 3),
     (
         "effective_width", "mm", "external force of the finger over that of its centre, the slice that touches first",
@@ -285,13 +290,21 @@ SLICES = _listed(
     ("f_ext", "N/m", "external normal force of the slice per metre of finger"),
     ("f_t", "N/m", "friction force of the slice per metre of finger"),
     ("f_electrostatic", "N/m", "electrostatic attraction of the slice per metre of finger"),
+    ("f_adhesion", "N/m", "adhesion of the slice without a voltage per metre of finger"),
     ("contact_length", "m", "length of the slice in contact, of the ridges"),
     ("gross_width", "m", "width between the outermost touching ridges of the slice"),
     ("pressure", "Pa", "mean contact pressure of the slice over its length in contact"),
+    ("real_over_gross", "", "length of the slice in contact over its gross width"),
     trace="f_ext f_t f_electrostatic contact_length gross_width",
 )
 """Of the slices of a whole finger."""
-OUTPUTS: tuple[Output, ...] = ()
+OUTPUTS: tuple[Output, ...] = (
+    Output("stuck_share", "", lambda state: 1 - state.slipping, "part of the points in contact that stick", tables=()),
+    Output(
+        "shear_stress", "kPa", lambda state: abs(state.f_t) / state.contact_length if state.contact_length else 0.0,
+        "friction force over the contact length", "shear stress on ridges", 1, tables=("result",),
+    ),
+)  # fmt: skip
 """Outputs of the package that are computed from a state, as those of a user are. A new one is an entry here."""
 
 _ORDER = "f_ext voltage mu_app f_t f_electrostatic f_contact contact_length p_max ridges_in_contact".split()

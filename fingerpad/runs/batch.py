@@ -99,7 +99,7 @@ def point(parameters: Mapping[str, Any], folder: str, limit: float, model: str, 
         return run("fingerpad.runs.solve", [str(place / "asked.json"), folder, str(limit), model], limit, law_folders)
 
 
-class Task(NamedTuple):
+class _Task(NamedTuple):
     """Points of a sweep that one process computes."""
 
     points: Sequence[str]
@@ -132,13 +132,13 @@ def sweep(
     for name, scene in scenes.items():
         if result(scene, folder) is None:
             place = str(below(folder, key(scene)).absolute())
-            tasks.append(Task([name], partial(point, scene.parameters(), place, limit, model, scene.law_folders())))
+            tasks.append(_Task([name], partial(point, scene.parameters(), place, limit, model, scene.law_folders())))
     return finish(scenes, tasks, folder, jobs, quiet, executor)
 
 
 def finish(
     scenes: Mapping[str, Scene],
-    tasks: Sequence[Task],
+    tasks: Sequence[_Task],
     folder: Path,
     jobs: int,
     quiet: bool = False,
@@ -220,12 +220,12 @@ def sweep_chains(
     with lock_file(folder / "lock") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)  # another sweep may be at it
         missing = {name: scene for name, scene in scenes.items() if result(scene, folder) is None}
-        half_arc, tasks, files = _half_arc([*missing.values()]), list[Task](), list[Path]()
+        half_arc, tasks, files = _half_arc([*missing.values()]), list[_Task](), list[Path]()
         for k, names in enumerate(chains(missing, jobs)):
             files.append(folder / f"chain_{k}.json")
             replace_json(files[-1], {"half_arc": half_arc, "scenes": [missing[name].parameters() for name in names]})
             law_folders = sorted({place for name in names for place in missing[name].law_folders()})
-            tasks.append(Task(names, partial(chain, str(files[-1]), str(folder), law_folders)))
+            tasks.append(_Task(names, partial(chain, str(files[-1]), str(folder), law_folders)))
         found = finish(scenes, tasks, folder, jobs, quiet, executor)
         for file in files:
             file.unlink(missing_ok=True)

@@ -60,10 +60,10 @@ class _Session:
 def run(scene: Scene, context: RunContext) -> Result:
     """Reach every load of a scene; refine where it asks for an accuracy; collective.
 
-    Where the scene does not give the number of ridges that can touch, a rule of thumb does. All loads are gone through
-    again where an omitted part of the model turns out to matter: ridges that come near the screen and could not touch,
-    the other half of a finger that may not stay symmetric, or smaller elements where no equilibrium is found without
-    them. A scene that asks for an accuracy starts coarse.
+    Where the scene does not give the number of ridges that can touch, a rule of thumb does. Where ridges come near the
+    screen that could not, the path goes on with them; with viscous layers all loads are gone through again. So they are
+    where the other half of a finger turns out to matter, which may not stay symmetric, or smaller elements, without
+    which no equilibrium is found. A scene that asks for an accuracy starts coarse.
 
     Args:
         scene: what is run.
@@ -81,8 +81,7 @@ def run(scene: Scene, context: RunContext) -> Result:
         SceneError: the finger cannot be meshed; on every rank.
         DiskFull: there is no more room for results; on the ranks that found out, which end the others.
     """
-    comm = context.comm or MPI.COMM_WORLD
-    outputs = checked(context.outputs)
+    comm, outputs = context.comm or MPI.COMM_WORLD, checked(context.outputs)
     all_together(comm)
     check_options(comm, scene.numerics.element)
     try:
@@ -134,8 +133,8 @@ def _run(scene: Scene, session: _Session, kept: dict[str, Any] | None, context: 
             result = attempt.result(scene, context)
             cost, where = result.cost, "" if result.folder is None else f"; results in {result.folder}"
             work = f"{cost.newton_iterations} Newton iterations, {cost.factorisations} factorisations"
-            work = f"{work}, {cost.memory_mb:.0f} MB, {cost.wall_seconds:.0f} s{where}"
-            console.show(f"\n{post.in_words(result)}\n  Work: {work}")
+            spent = f"{cost.memory_mb:.0f} MB, {cost.wall_seconds:.0f} s{where}"
+            console.show(f"\n{post.in_words(result)}\n  Work: {work}, {spent}")
             writer.close()
             if checkpoint is not None and session.comm.rank == 0 and not result.interrupted:
                 checkpoint.delete()
@@ -154,15 +153,14 @@ class _Attempt:
     def __init__(self, model: FingerModel, session: _Session) -> None:
         """Mesh the finger; collective."""
         self._model, self._session, self._comm, self._console = model, session, session.comm, session.console
-        self._console.phase("meshing the finger and setting up its equations")
         with session.clock.phase("setup"):
+            self._console.phase("meshing the finger and setting up its equations")
             self.simulation = Simulation(model, self._comm, self._on_step, self._on_load)
-        loads, written = [load.name for load in model.loads], (session.writer, session.console, session.clock)
-        self.report = Report(self.simulation, model.omitted, loads, *written, session.outputs)
+        written = [load.name for load in model.loads], session.writer, session.console, session.clock
+        self.report = Report(self.simulation, model.omitted, *written, session.outputs)
         self._recorder = StateRecorder(self.simulation) if model.options.errors else None
         self._estimate: Refinement | WholePath | None = None
-        self._ended: dict[str, str] = {}
-        self._has_kept = False  # whether there is a checkpoint
+        self._ended, self._has_kept = dict[str, str](), False  # whether there is a checkpoint
         self._solves, self._tenths = 0, -1  # for the error estimate: solves, and what is done of the coarser path
         self._steps, self._done = 0, 0.0  # accepted since the last checkpoint; part of the history that is done
 
@@ -180,8 +178,9 @@ class _Attempt:
         """Return what is kept of a run that is stopped, and how it goes on, in words."""
         if self._session.checkpoint is None:
             return ""
-        resumes = "fingerpad run --resume FOLDER goes on from there"
-        goes_on = resumes if self._has_kept else "the same command starts again"
+        goes_on = (
+            "fingerpad run --resume FOLDER goes on from there" if self._has_kept else "the same command starts again"
+        )
         return f"every accepted step is in the folder of results, and {goes_on}"
 
     def _on_load(self) -> None:
@@ -206,7 +205,7 @@ class _Attempt:
         self._has_kept = True
 
     def _state(self, simulation: dict[str, Any]) -> dict[str, Any]:
-        recorder = None if self._recorder is None else self._recorder.kept()
+        recorder = self._recorder and self._recorder.kept()
         return {"simulation": simulation, "report": self.report.kept(), "recorder": recorder, "done": self._done}
 
     def carried(self) -> dict[str, Any]:
@@ -214,19 +213,15 @@ class _Attempt:
         return self._state(self.simulation.carried()) | {"items": self.report.record.states, "kept": self._has_kept}
 
     def resume(self, kept: dict[str, Any]) -> RestartRequired | None:
-        """Go on from a checkpoint, as :func:`fingerpad.runs.checkpoint.read` gives it, or another mesh; collective.
-
-        Returns:
-            That all loads must be gone through again, where the state was of another mesh and is not found on this one.
-        """
-        self._has_kept, self._done, states = kept.get("kept", True), kept["done"], kept["items"]
+        """Go on from a checkpoint or another mesh; return that all loads must be gone through again if in vain."""
+        self._has_kept, self._done = kept.get("kept", True), kept["done"]
         try:
-            self.simulation.resume(kept["simulation"], [*states])
+            self.simulation.resume(kept["simulation"], [*kept["items"]])
         except OtherBody as error:
             raise CheckpointError(f"the checkpoint is of another mesh: {error}") from error
         except (StepFailed, ValueError) as error:
             return RestartRequired(str(error), self._model)
-        self.report.resume(states, kept["report"], self._done, listed="kept" in kept)
+        self.report.resume(kept["items"], kept["report"], self._done, listed="kept" in kept)
         if self._recorder is not None:
             self._recorder.resume(kept["recorder"])
         return None

@@ -24,6 +24,7 @@ from fingerpad.results.quantities import Output
 from fingerpad.results.result import Result
 from fingerpad.results.writing import Writer
 from fingerpad.runs.context import BEGUN, RunContext
+from fingerpad.scene.materials import adheres
 from fingerpad.scene.messages import SceneError, clip
 from variational.caution import Caution
 from variational.state import ContactState
@@ -112,8 +113,14 @@ NEWTONS = Entry(
     "fingerpad.slices.estimate:with_newtons",
     lambda r, _: r.follows_path and r.finger is None,
 )
+PULL_OFF = Entry(
+    "the pull-off force",
+    "fingerpad.slices.pull_off:with_pull_off",
+    lambda r, _: r.follows_path and bool(r.steps) and adheres(r.scene.adhesion),
+)
 POST: list[Entry] = [
     NEWTONS,
+    PULL_OFF,
     SUMS,
     BANDS,
     PEOPLE,

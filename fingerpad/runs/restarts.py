@@ -101,7 +101,7 @@ def hint(error: StepFailed) -> str:
     return next((words for name, words in _HINTS.items() if cause.reason.startswith(name)), _OTHERWISE)
 
 
-def finer_mesh_may_help(error: StepFailed, coarse_start: bool) -> bool:
+def _finer_mesh_may_help(error: StepFailed, coarse_start: bool) -> bool:
     """Return whether a load that could not be reached may be with a smaller ``mesh.contact``.
 
     A mesh that was chosen as one to start from, and not by a person, may always be too coarse.
@@ -121,7 +121,7 @@ def finer(model: FingerModel, error: StepFailed, comm: "MPI.Comm", reason: str =
     words.
     """
     coarse = model.final is not None and model.mesh.contact > model.final.contact
-    helps = model.mesh_file is None and finer_mesh_may_help(error, bool(model.asked) or coarse)
+    helps = model.mesh_file is None and _finer_mesh_may_help(error, bool(model.asked) or coarse)
     contact = model.mesh.contact / 2
     if not helps or (contact < FINEST and not coarse):
         return None

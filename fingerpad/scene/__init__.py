@@ -6,7 +6,7 @@ from typing import Any
 
 from fingerpad.scene import law_keys
 from fingerpad.scene.loads import Load
-from fingerpad.scene.materials import CLOSURES, FRICTION_LAWS, MATERIALS
+from fingerpad.scene.materials import ADHESION_LAWS, CLOSURES, FRICTION_LAWS, MATERIALS
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.parameters import CONTACT, Accuracy, Contact, Numerics, Output
 from fingerpad.scene.presets import start
@@ -14,7 +14,7 @@ from fingerpad.scene.reading import override, plain, put
 from fingerpad.scene.scene import Scene, as_kept, changed_keys, from_data, load
 from variational.contact.friction import Coulomb
 
-_KINDS = (MATERIALS, FRICTION_LAWS, CLOSURES, CONTACT.kind)
+_KINDS = (MATERIALS, FRICTION_LAWS, ADHESION_LAWS, CLOSURES, CONTACT.kind)
 
 
 def law_name(law: object) -> str:

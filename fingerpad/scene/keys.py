@@ -71,7 +71,7 @@ def _of(model: type[BaseModel], table: str, instance: BaseModel | None) -> Itera
         parts = tuple(_parts(own)) + tuple(field.metadata)
         law = next((part for part in parts if isinstance(part, LawKey)), None)
         if law is not None:
-            meaning = plain_text(field.description)
+            meaning = _plain_text(field.description)
             if law.number:
                 limits = range_of(keys_of(law.default)[law.number])
                 yield Key(table + name, getattr(law.default, law.number), meaning, limits)
@@ -87,7 +87,7 @@ def _of(model: type[BaseModel], table: str, instance: BaseModel | None) -> Itera
             ):  # may be a number or a name too
                 continue
         required = instance is None and field.is_required()
-        meaning = plain_text(field.description)
+        meaning = _plain_text(field.description)
         yield Key(table + name, None if required else value, meaning, *_allowed(parts), required=required)
     for where, key, meaning in laws:
         yield from _of_law(where, key, meaning)
@@ -165,11 +165,11 @@ def docstrings(law: type) -> dict[str, str]:
     for line, after in pairwise(getattr(body, "body", [])):
         if isinstance(line, ast.AnnAssign) and isinstance(line.target, ast.Name):
             if isinstance(after, ast.Expr) and isinstance(after.value, ast.Constant):
-                found[line.target.id] = plain_text(str(after.value.value))
+                found[line.target.id] = _plain_text(str(after.value.value))
     return found
 
 
-def plain_text(text: str | None) -> str:
+def _plain_text(text: str | None) -> str:
     """Return a docstring as a line of text, without the marks of reStructuredText."""
     text = re.sub(r":\w+:`~?([^`]*)`", r"\1", " ".join((text or "").split()))
     return re.sub(r"\*([Aa]ssumption)\*", r"\1", text.replace("``", ""))

@@ -68,8 +68,8 @@ class Load(Table):
     name: Annotated[str, AfterValidator(load_name)]
     """Name of the load, also of the load's pictures; see :mod:`fingerpad.scene.loads`."""
     f_ext: Annotated[float | Waveform | None, controls.FORCE] = None
-    """External normal force on the bone (N/m), or a waveform. Zero is allowed only under voltage, which then holds the
-    skin on the screen."""
+    """External normal force on the bone (N/m), or a waveform. Zero is allowed only under voltage or with
+    adhesion, which then hold the skin on the screen."""
     bone_height: Annotated[float | Waveform | None, controls.HEIGHT] = None
     """Change of the bone's height from the unloaded position (m), negative when pressed, or a waveform."""
     voltage: Annotated[float | CarriedWaveform | None, controls.VOLTAGE] = None
@@ -233,10 +233,9 @@ def refuse_contradictions(
                 "another name"
             )
     _refuse_times(history, step_scale, follows)
-    _refuse_floating(history)
 
 
-def _refuse_floating(history: Sequence[Load]) -> None:
+def refuse_floating(history: Sequence[Load]) -> None:
     """Refuse loads that leave the bone neither held nor pressed nor attracted."""
     acts: dict[str, float | None] = {"f_ext": None, "voltage": 0.0}  # None of a force: the height is prescribed
     for key, load, way in ways(history):

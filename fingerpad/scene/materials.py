@@ -32,6 +32,7 @@ from fingerpad.scene.viscosity import Viscosity, elastic
 from geometry import tags
 from geometry.parameters import Fingertip
 from geometry.units import Finite, Table, within
+from variational.attraction.adhesion import Adhesion, Dugdale
 from variational.contact.aging import GrowingShear, Occlusion, Speed
 from variational.contact.friction import Coulomb, Derjaguin, Friction
 from variational.materials.material import Material
@@ -53,8 +54,11 @@ def _named(*laws: type) -> dict[str, type]:
 
 MATERIALS = Kind(Material, "a Material", _named(Ogden, NeoHooke, SaintVenant), Material.check)
 FRICTION_LAWS = Kind(Friction, "a Friction", _named(Coulomb, Derjaguin, Occlusion, GrowingShear, Speed), Friction.check)
+ADHESION_LAWS = Kind(Adhesion, "an Adhesion", _named(Dugdale), lambda law: law.check())
 CLOSURES = Kind(closure.Closure, "a Closure", _named(BearingArea, BoundaryElements, Persson), closure.check)
 """Laws of the package by kind: a new one is a line here."""
+PRESET_LAWS: dict[str, type] = {**MATERIALS.laws, **CLOSURES.laws}
+"""Laws whose parameters a finger by name may set, by name."""
 LAYERS = {name.replace(" ", "_"): tag for name, tag in tags.LAYERS.items()}
 """Tag of each layer by its key in the scene."""
 
@@ -255,6 +259,22 @@ def _insulators(data: Mapping[str, Any]) -> dict[str, Any]:
 BEARING_AREA = BearingArea(Electric().h_0(Fingertip().sc_thickness))
 ROUGHNESS = _RoughnessKey(CLOSURES, BEARING_AREA, of_scene=_insulators, all_laws=True)
 FRICTION = LawKey(FRICTION_LAWS, Coulomb(0.25), number="mu_f")
+NO_ADHESION = Dugdale(0.0)
+ADHESION = Annotated[Adhesion, LawKey(ADHESION_LAWS, NO_ADHESION)]
+
+
+def adheres(law: Adhesion | UnresolvedLaw) -> bool:
+    """Return whether a scene's law of adhesion attracts; one of one's own in results that were read does."""
+    return isinstance(law, UnresolvedLaw) or law.work > 0
+
+
+def refuse_memory(force: float | None, friction: Any) -> None:
+    """Refuse a law of friction with a memory beside a force on the whole finger (N), by ``ValueError``."""
+    if force is not None and isinstance(friction, Friction) and friction.memory is not None:
+        raise ValueError(
+            "force is given and friction has a memory, and the sum of slices has no common time; give f_ext or a "
+            "history"
+        )
 
 
 def refuse_thickness(closure: Any, h_0: float) -> None:

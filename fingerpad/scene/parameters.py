@@ -253,9 +253,12 @@ class Slices(Table):
     length: Annotated[Finite, within(1e-3, 0.2, "m")] = 28e-3
     """Length of the finger pad, centred on z = 0. *Assumption*: the last phalanx. A contact that is longer is
     refused."""
-    tilt: Annotated[Finite, within(1e-6, 0.5, zero=True, sides=2)] = 0.0
-    """Slope θ of the bone's axis to the screen (rad): a slice at z > 0 is indented by θ z less. Range: up to 29
-    degrees, beyond which a finger touches with its tip."""
+    shape: Literal["parabola", "ellipsoid"] = "parabola"
+    """Lower side without a table of heights: a parabola with slices of one width, or half an ellipsoid of the same
+    radius and length, whose slices become narrower towards its tip. Tilts above some 15 degrees need the latter."""
+    tilt: Annotated[Finite, within(1e-6, 0.79, zero=True, sides=2)] = 0.0
+    """Angle α of the bone's axis to the screen (rad), positive where the end at z < 0 goes down. The indentation is
+    that of the place that touches first, and slices stand upright on the screen. Range: up to 45 degrees."""
     z: Annotated[tuple[Place, ...], Many] | None = None
     """Places along the axis of the tables ``height`` and ``width``, growing. The finger ends at the first and the
     last."""
@@ -286,6 +289,7 @@ class Slices(Table):
             if len(values) != len(self.z):
                 raise ValueError(f"{name} has {len(values)} values and z has {len(self.z)}; each place needs one value")
         given = [name for name in ("radius", "length") if name in self.model_fields_set]
+        given += ["shape"] if self.shape != "parabola" else []
         if self.height is not None and given:
             raise ValueError(
                 f"{given[0]} is {show(getattr(self, given[0]))} and height is given too; leave out one of them"

@@ -25,6 +25,7 @@ _REPLACED = {
     "geometry.file": tuple(f"geometry.{name}" for name in _SHAPE),
 }
 """Keys that another one makes meaningless: those of a preset, and of a scene that is changed, give way to it."""
+_OF_MAP = ("h_rms", "wavelength")  # that a height map of the roughness gives
 _START = {"contact": 20e-6, "receptor": 40e-6, "interface": 120e-6, "growth": 0.5}  # m, but for the growth
 _START_AT_SITES = 10e-6  # m; coarser elements do not resolve the tips of 6 µm: halving them does not show the error
 
@@ -140,7 +141,8 @@ def _takes(table: Any, parts: Sequence[str], laws: Mapping[str, type]) -> bool:
     law = table.get("law")
     law = laws.get(law) if isinstance(law, str) else law
     known = "law" not in table or (isinstance(law, type) and is_dataclass(law) and parts[0] in keys_of(law))
-    return known and parts[0] not in table
+    of_map = "topography" in table and parts[0] in _OF_MAP
+    return known and parts[0] not in table and not of_map
 
 
 def _put(table: Mapping[str, Any], parts: Sequence[str], value: Any) -> dict[str, Any]:

@@ -15,7 +15,7 @@ import numpy as np
 from fingerpad.scene.drive import drive_of, leak_in_words, remains
 from fingerpad.scene.fingers import FINGERS, PAPER
 from fingerpad.scene.law_keys import UnresolvedLaw
-from fingerpad.scene.materials import LAYERS
+from fingerpad.scene.materials import LAYERS, adheres
 from fingerpad.scene.messages import clip, show
 from fingerpad.scene.presets import named, value_at
 from fingerpad.scene.viscosity import elastic, viscous_layers
@@ -53,7 +53,8 @@ def coefficient(scene: "Scene") -> float | None:
 def used(scene: "Scene") -> dict[str, str]:
     """Return every law of a scene in words: its numbers in SI units, which are named where the law names them.
 
-    Keys are the layers, ``contact``, ``friction``, ``attraction`` and ``closure``, and ``mesh`` where one was given.
+    Keys are the layers, ``contact``, ``friction``, ``attraction`` and ``closure``, and ``adhesion`` and ``mesh`` where
+    one was given.
     """
     found = {layer: _words(getattr(scene.materials, layer)) for layer in LAYERS}
     found["contact"] = _words(scene.contact.law)
@@ -62,6 +63,8 @@ def used(scene: "Scene") -> dict[str, str]:
     charged = any(load.voltage for load in scene.loads())
     circuit = scene.electric.circuit(scene.geometry.sc_thickness)
     found["attraction"] = _call("electrostatic", {"h_0": scene.h_0}, _OF_SCENE) if charged else "none"
+    if adheres(law := scene.adhesion):
+        found["adhesion"] = _words(law) + ("" if isinstance(law, UnresolvedLaw) else f", {law.work:.3g} J/m²")
     found |= {} if circuit.lossless else {"circuit": circuit_in_words(circuit)}
     found["closure"] = _words(scene.roughness) if charged else "none"
     return found | ({} if scene.geometry.file is None else {"mesh": scene.geometry.file})

@@ -18,15 +18,18 @@ from fingerpad.scene.fingers import PAPER, FingerName
 from fingerpad.scene.keys import every
 from fingerpad.scene.law_code import digest, folder_of, imported
 from fingerpad.scene.law_keys import UnresolvedLaw, kept
-from fingerpad.scene.loads import Load, drives, refuse_contradictions, repeated
+from fingerpad.scene.loads import Load, drives, refuse_contradictions, refuse_floating, repeated
 from fingerpad.scene.materials import (
+    ADHESION,
     BEARING_AREA,
-    CLOSURES,
     FRICTION,
     LAYERS,
-    MATERIALS,
+    NO_ADHESION,
+    PRESET_LAWS,
     ROUGHNESS,
     Materials,
+    adheres,
+    refuse_memory,
     refuse_thickness,
 )
 from fingerpad.scene.messages import SceneError, first_error, show
@@ -48,8 +51,6 @@ from geometry.units import Finite, Table, computed, within
 from variational.contact.friction import Friction, law_of
 from variational.materials.material import Material
 from variational.roughness.closure import Closure
-
-_LAWS: dict[str, type] = {**MATERIALS.laws, **CLOSURES.laws}
 
 
 class Scene(Table):
@@ -80,6 +81,8 @@ class Scene(Table):
     """Loads to reach one after the other, at most 1000, in place of the default press, charge and slide."""
     friction: Annotated[float | Friction, FRICTION] = 0.25
     """Friction coefficient mu_0 of skin on the screen, or a table of a law of friction."""
+    adhesion: ADHESION = NO_ADHESION
+    """Adhesion of skin to the screen without a voltage, a table of a law; by default none."""
     finger: FingerName = "paper"
     """Finger by its name (docs/fingers.md). A given key wins over the name's. "paper" is the default finger.
     Its tissue and leak act under a drive; a constant voltage has no losses."""
@@ -104,10 +107,10 @@ class Scene(Table):
         given = plain(data)
         refuse_beside_mesh(given)
         try:
-            self.__pydantic_validator__.validate_python(with_presets(given, _LAWS), self_instance=self)
+            self.__pydantic_validator__.validate_python(with_presets(given, PRESET_LAWS), self_instance=self)
         except ValidationError as error:
             raise SceneError(first_error(error, Scene, (key.name for key in every(Scene)))) from None
-        self._preset = preset_keys(given, _LAWS, Scene)
+        self._preset = preset_keys(given, PRESET_LAWS, Scene)
 
     def __eq__(self, other: object) -> bool:
         """Return whether another scene has the same values, whichever of them were given."""
@@ -126,11 +129,8 @@ class Scene(Table):
         if self.history is not None:
             steps, follows = self.numerics.step_scale, self.electric.follows
             refuse_contradictions(self.history, given, self.output.errors, steps, follows)
-        if self.force is not None and isinstance(self.friction, Friction) and self.friction.memory is not None:
-            raise ValueError(
-                "force is given and friction has a memory, and the sum of slices has no common time; give f_ext or a "
-                "history"
-            )
+            refuse_floating(() if adheres(self.adhesion) else self.history)
+        refuse_memory(self.force, self.friction)
         refuse_beside(viscous_layers(self.materials), {"force": self.force, "accuracy": self.accuracy})
         refuse_thickness(self.roughness, self.h_0)
         refuse_drives(self.drives(), self.electric, self.geometry.sc_thickness)
@@ -193,7 +193,8 @@ class Scene(Table):
     def laws(self) -> dict[str, Any]:
         """Return what each key has that holds a law: an object, or the number of a friction coefficient."""
         layers = {f"materials.{name}": elastic(getattr(self.materials, name)) for name in LAYERS}
-        return {"friction": self.friction, "roughness": self.roughness, "contact": self.contact.law} | layers
+        own = {name: getattr(self, name) for name in ("friction", "adhesion", "roughness")}
+        return own | {"contact": self.contact.law} | layers
 
     def own_laws(self) -> dict[str, Any]:
         """Return the laws of one's own by key."""
@@ -275,7 +276,7 @@ class Scene(Table):
         else:
             found["geometry"] = {key: x for key, x in found["geometry"].items() if not key.startswith("file")}
         if self.slices.height is not None:
-            del found["slices"]["radius"], found["slices"]["length"]
+            del found["slices"]["radius"], found["slices"]["length"], found["slices"]["shape"]
         return found
 
     def _repr_html_(self) -> str:
@@ -318,7 +319,7 @@ def overridden(data: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str,
     Raises:
         SceneError: a table, or an entry of a list, that is not there.
     """
-    found = without(data, preset_keys(data, _LAWS, Scene)) if "finger" in changes else dict(data)
+    found = without(data, preset_keys(data, PRESET_LAWS, Scene)) if "finger" in changes else dict(data)
     put_all(found, changes)
     return found
 

@@ -87,7 +87,7 @@ class Waveform(Table):
     file: Annotated[str | None, Field(exclude=True)] = None
     """CSV file with a header such as ``time (s),voltage (V)``, or of an oscilloscope
     (:mod:`fingerpad.scene.wavefile`), straight between its points; a relative path starts at the scene file. The times
-    increase, and the first counts as 0. A file that repeats itself is cut to whole periods. It is read at once: a scene
+    increase, and the first counts as 0. A file that repeats itself has whole periods. It is read at once: a scene
     stores only its points."""
     column: Annotated[str | None, Field(exclude=True, max_length=100)] = None
     """Name of the column of values in a file with several, as ``CH1`` or ``CH1 (V)``."""

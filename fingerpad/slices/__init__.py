@@ -2,11 +2,12 @@ r"""Newtons and square millimetres: a whole finger as slices of plane strain alo
 
 The finger is cut across its axis z. Its bone is rigid, so that a slice at z is indented by
 
-.. math:: h(z) = \delta - s(z) - \theta z,
+.. math:: h(z) = \delta - s(z),
 
-with the bone's lowering δ, the height s of the finger's lower side above its lowest point, and the slope θ of the
-bone. Every slice is the scene's cross-section on a scale w(z), in plane strain. One trace of the cross-section, its
-external force f, friction force, attraction, contact length and gross width over the indentation, answers for all:
+with the bone's lowering δ since the first touch and the height s of the finger's lower side above its lowest point. A
+tilted bone has :func:`fingerpad.slices.total.tilted`. Every slice is the scene's cross-section on a scale w(z), in
+plane strain. One trace of the cross-section, its external force f, friction force, attraction, contact length and gross
+width over the indentation, answers for all:
 
 .. math:: F = \int w\, f(h / w) \,dz, \qquad A = \int w\, \ell(h / w) \,dz .
 

@@ -21,7 +21,7 @@ import numpy as np
 from fingerpad.accuracy.richardson import of_sum, of_two_meshes, rigid
 from fingerpad.results.quantities import FRICTION, Output
 from fingerpad.slices.total import AREAS, Profile, at_force
-from fingerpad.slices.trace import NAMES, Trace, columns
+from fingerpad.slices.trace import NAMES, Trace, borne, columns
 from variational.state import ContactState
 
 _SUMS = {AREAS.get(name, name): name for name in NAMES if name not in ("f_ext", "f_t")}
@@ -54,9 +54,7 @@ def corrected(trace: Trace, pairs: Sequence[Pair], wavelength: float) -> Trace:
         for name in (*_SCALED, *(each.name for each in own))
     }
     found = {name: values * ratio.get(name, 1.0) for name, values in trace.columns.items() if name in coarse}
-    borne = trace.columns["f_ext"] + trace.columns["f_electrostatic"]
-    grip = ratio["f_t/f_c"] * trace.columns["f_t"] / borne
-    found["f_t"] = grip * (found["f_ext"] + found["f_electrostatic"])
+    found["f_t"] = ratio["f_t/f_c"] * trace.columns["f_t"] / borne(trace.columns) * borne(found)
     return Trace(trace.depth * ratio["|bone_height|"], found, trace.ridges, tuple(own))
 
 
@@ -114,9 +112,9 @@ def correction_errors(
 def _values(states: Sequence[ContactState], wavelength: float, own: Sequence[Output] = ()) -> dict[str, np.ndarray]:
     """Return what is scaled of states, shape (states,)."""
     found = columns(states, wavelength, own)
-    depth, borne = np.array([-state.bone_height for state in states]), found["f_ext"] + found["f_electrostatic"]
-    f_t = np.where(found["f_t"] > _NO_FRICTION * borne, found["f_t"], 0.0)
-    return found | {"|bone_height|": depth, "f_t": f_t, "f_t/f_c": f_t / borne}
+    depth, bears = np.array([-state.bone_height for state in states]), borne(found)
+    f_t = np.where(found["f_t"] > _NO_FRICTION * bears, found["f_t"], 0.0)
+    return found | {"|bone_height|": depth, "f_t": f_t, "f_t/f_c": f_t / bears}
 
 
 def _parts(state: ContactState, wavelength: float) -> Mapping[str, np.ndarray]:

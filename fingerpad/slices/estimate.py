@@ -25,7 +25,7 @@ from fingerpad.scene.remarks import coefficient
 from fingerpad.slices import errors
 from fingerpad.slices.finger import WholeFinger, in_order
 from fingerpad.slices.total import Profile, profile, under_one_force
-from fingerpad.slices.trace import LEAST, NAMES, Trace, TraceError, columns, trace
+from fingerpad.slices.trace import ADHESION, LEAST, NAMES, Trace, TraceError, columns, trace
 from fingerpad.slices.traces import LIGHT, NO_NEWTONS
 from variational.state import ContactState
 
@@ -172,11 +172,11 @@ def _scaled(
     """Return the trace of a named state: the press changed as the cylinders are, and scaled to the state itself."""
     states = _charged(scene, press, name, end.voltage)
     law, now = scene.friction_law(), states[-1]
-    keys = ("f_electrostatic", "contact_length", "bone_height")
+    keys = ("f_electrostatic", "f_adhesion", "contact_length", "bone_height")
     shape = {key: _ratio(getattr(end, key), getattr(now, key)) for key in keys}
     found = [replace(state, **{key: factor * getattr(state, key) for key, factor in shape.items()}) for state in states]
     slips = name == "full_slip" and law is not None
-    borne = [(state.f_ext + state.f_electrostatic, state.contact_length) for state in found]
+    borne = [(state.f_ext + state.f_attraction, state.contact_length) for state in found]
     friction = [law.resultant(*each) if slips and law else 0.0 for each in borne]
     # Coulomb's law does not ask how a force is spread; any other one is scaled to the run's own state.
     factor = 1.0 if coefficient(scene) is not None else _ratio(abs(end.f_t), friction[-1])
@@ -190,7 +190,8 @@ def _scaled(
     own = [each for each in made.own if each.name in ends and (made.columns[each.name][-1] or not ends[each.name][0])]
     scaled = {key: made.columns[key] for key in ("gross_width", *(each.name for each in own))}
     scaled = {key: _ratio(ends[key][0], values[-1]) * values for key, values in scaled.items()}
-    return Trace(made.depth, {key: made.columns[key] for key in NAMES} | scaled, own=tuple(own))
+    kept = {key: values for key, values in made.columns.items() if key in (*NAMES, ADHESION)}
+    return Trace(made.depth, kept | scaled, own=tuple(own))
 
 
 def _charged(scene: Scene, press: Sequence[ContactState], name: str, voltage: float) -> list[ContactState]:

@@ -11,7 +11,7 @@ from fingerpad.results.states import STATES, WORDS, called
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.parameters import Slices
 from fingerpad.slices import errors
-from fingerpad.slices.total import Total, at_force, profile
+from fingerpad.slices.total import RATIOS, Total, at_force, profile
 from fingerpad.slices.trace import Trace
 
 _SAME_FORCE = 1e-9
@@ -72,6 +72,9 @@ class WholeFinger:
             known = carried.get(MODEL, shares)  # of a cheaper model nothing is known where its distance is not
             parts = [each for part in _PARTS if (each := carried.get(part))]  # an output of one's own has all or none
             there = {key for key in known if key in FINGER or all(key in each for each in parts)}
+            pairs = {key: pair for key, pair in RATIOS.items() if {*pair} <= there}
+            shares |= {key: sum(shares[each] for each in pair) for key, pair in pairs.items()}
+            there = there - {*RATIOS} | {*pairs}
             found[name] = {key: abs(share * total.values[key]) for key, share in shares.items() if key in there}
         return found
 

@@ -13,16 +13,20 @@ from scipy.optimize import brentq
 
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.parameters import Slices
-from fingerpad.slices.trace import Trace
+from fingerpad.slices.trace import Trace, borne
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.floating[Any]]
 _SEARCHED = 2001  # places along the finger between which ends of contact are looked for
 _SEARCHED_FOR_DEEPEST = 4001  # places along the finger among which the first to end its trace is looked for
 _DOUBLINGS = 6  # of the depth, from the least one tried to the end of the trace
+_OVERHANG = 0.05  # way along the screen over that along the bone, from which a tilted finger's lower side is left out
+_TIP = 1e-12  # least square of the scale at the tip of an ellipsoid, whose slope is infinite there
 _SMALLEST_FORCE = 1e-300  # N, of a logarithm
 AREAS = {"contact_length": "contact_area", "gross_width": "gross_area"}
 """Columns of a slice whose sums have names of their own."""
+RATIOS = {"real_over_gross": ("contact_area", "gross_area"), "shear_stress": ("f_t", "contact_area")}
+"""Quantities of the whole finger that are ratios of two sums. Their relative error is that of both."""
 
 
 def _lowest(of: Callable[[Floats], Floats], ends: tuple[float, float], count: int) -> tuple[float, float, bool]:
@@ -40,20 +44,20 @@ class Profile:
 
     ends: tuple[float, float]
     height: Callable[[Floats | float], Floats | float]
-    """Height s (m) of the lower side at places z (m)."""
+    """Height (m) of the lower side over the screen, but for a constant, at places z (m) along the bone."""
     width: Callable[[Floats], Floats]
     """Scale w of the slices at places z (m)."""
-    tilt: float = 0.0
-    """Slope θ of the bone."""
+    stretch: Callable[[Floats], Floats] = np.ones_like
+    """Way along the screen over that along the bone at places z (m), where a tilt makes them different."""
     straight: bool = False
     """Whether all heights are 0: then the ends may touch."""
 
     def rise(self, z: Floats | float) -> Floats:
-        """Return how far slices (m) stand above the one that touches first, s + θ z less its least value (m)."""
+        """Return how far slices (m) stand above the one that touches first (m)."""
         return self._above(z) - self._lowest[1]
 
     def _above(self, z: Floats | float) -> Floats:
-        return np.asarray(self.height(z) + self.tilt * z, dtype=float)
+        return np.asarray(self.height(z), dtype=float)
 
     @cached_property
     def _searched(self) -> tuple[Floats, Floats]:
@@ -63,12 +67,12 @@ class Profile:
 
     @cached_property
     def _lowest(self) -> tuple[float, float]:
-        """The place (m) where the finger first touches, and s + θ z (m) there, the least one."""
+        """The place (m) where the finger first touches, and the height (m) there, the least one."""
         place, least, at_end = _lowest(self._above, self.ends, _SEARCHED)
-        if at_end and not (self.straight and self.tilt == 0):
+        if at_end and not self.straight:
             raise SceneError(
-                f"slices.tilt is {self.tilt:g} rad, with which the finger is lowest at its end, at z = {place:.3g} m, "
-                "and its pad has no contact; give a smaller tilt, a smaller radius or a longer finger"
+                f"slices.tilt makes the finger lowest at its end, at z = {place:.3g} m, so that its pad has no "
+                "contact; give a smaller tilt, a smaller radius, a longer finger, or slices.shape = 'ellipsoid'"
             )
         return place, least
 
@@ -91,7 +95,8 @@ class Profile:
             end = z[0] if touches[0] else z[-1]
             raise SceneError(
                 f"the finger ends at z = {end:.3g} m, and at an indentation of {delta:.3g} m the contact goes beyond; "
-                "give a smaller force or tilt, or a longer finger (slices.length, or slices.z and slices.height)"
+                "give a smaller force or tilt, or a longer finger (slices.length or slices.shape, or slices.z and "
+                "slices.height)"
             )
         edges = np.flatnonzero(touches[1:] != touches[:-1])
         roots = [self._root(delta, z[k], z[k + 1]) for k in edges]
@@ -115,16 +120,60 @@ class Profile:
 @lru_cache(maxsize=64)
 def profile(slices: Slices) -> Profile:
     """Return the finger that a scene's table describes; tables are interpolated monotonically, by cubics."""
+    level, slope = _level(slices)
+    return tilted(level, slope, slices.tilt) if slices.tilt else level
+
+
+def tilted(level: Profile, slope: Callable[[Floats], Floats], angle: float) -> Profile:
+    r"""Return a finger whose bone is turned by an angle α (rad), cut across the screen as before.
+
+    .. math:: y = s \cos\alpha + z \sin\alpha, \qquad \frac{d\zeta}{dz} = \cos\alpha - s' \sin\alpha
+              = \frac{\cos(\varphi + \alpha)}{\cos\varphi}, \qquad \tan\varphi = s'
+
+    at the place ζ along the screen. A section across the bone leans against the skin's normal by φ, one across the
+    screen by φ + α. By Meusnier's theorem its radius is that of the first one times the same ratio, and so is its scale
+    w: on a sphere, whose sections across the bone have w = cos φ, it is that of the level finger at any tilt.
+
+    Args:
+        level: the finger with its bone along the screen.
+        slope: ds/dz at places z (m).
+        angle: α (rad), positive where the end at z < 0 goes down.
+    """
+    sine, cosine = math.sin(angle), math.cos(angle)
+
+    def stretch(z: Floats) -> Floats:
+        return np.asarray(cosine - sine * slope(z))
+
+    z = np.linspace(*level.ends, _SEARCHED)
+    with np.errstate(all="ignore"):
+        upright = z[stretch(z) > _OVERHANG]  # beyond, the lower side turns away from the screen
+    return Profile(
+        (float(upright[0]), float(upright[-1])),
+        lambda z: level.height(z) * cosine + z * sine,
+        lambda z: level.width(z) * stretch(z),
+        stretch,
+    )
+
+
+def _level(slices: Slices) -> tuple[Profile, Callable[[Floats], Floats]]:
+    """Return the finger with its bone along the screen, and the slope of its lower side over the place (m)."""
     places = None if slices.z is None else np.array(slices.z)
     width = np.ones_like if slices.width is None else PchipInterpolator(places, slices.width)
     if slices.height is not None:
         assert places is not None
         height = np.array(slices.height)
         bent = PchipInterpolator(places, height)
-        return Profile((places[0], places[-1]), bent, width, slices.tilt, straight=not height.any())
-    half = slices.length / 2
+        return Profile((places[0], places[-1]), bent, width, straight=not height.any()), bent.derivative()
+    half, radius = slices.length / 2, slices.radius
     ends = (-half, half) if places is None else (max(-half, places[0]), min(half, places[-1]))
-    return Profile(ends, lambda z: z**2 / (2 * slices.radius), width, slices.tilt)
+    if slices.shape == "parabola":
+        return Profile(ends, lambda z: z**2 / (2 * radius), width), lambda z: z / radius
+
+    def scale(z: Floats | float) -> Floats:
+        return np.sqrt(np.maximum(1 - (z / half) ** 2, _TIP))
+
+    width = scale if slices.width is None else width
+    return Profile(ends, lambda z: half**2 / radius * (1 - scale(z)), width), lambda z: z / (radius * scale(z))
 
 
 class BeyondTrace(SceneError):  # noqa: N818
@@ -167,19 +216,21 @@ class Total:
     def values(self) -> dict[str, float]:
         """The sums with what follows from them: N, m², m, and the apparent friction coefficient."""
         width = self.totals["f_ext"] / self.centre
-        return self.totals | {"mu_app": self.mu_app, "indentation": self.delta, "effective_width": width}
+        ratios = {name: self.totals[a] / self.totals[b] for name, (a, b) in RATIOS.items()}
+        return self.totals | {"mu_app": self.mu_app, "indentation": self.delta, "effective_width": width} | ratios
 
     @property
     def pressure(self) -> Array:
         """Mean contact pressure of each slice over its contact length (Pa), shape (slices,)."""
-        borne = self.columns["f_ext"] + self.columns["f_electrostatic"]
-        length = self.columns["contact_length"]
-        return np.divide(borne, length, out=np.zeros_like(borne), where=length > 0)
+        force, length = borne(self.columns), self.columns["contact_length"]
+        return np.divide(force, length, out=np.zeros_like(force), where=length > 0)
 
     def slices(self) -> dict[str, Array]:
         """Return all values of the slices by name; m, N/m and Pa, shape (slices,)."""
         places = {"z": self.z, "thickness": self.thickness, "indentation": self.depth}
-        return places | self.columns | {"pressure": self.pressure}
+        length, gross = (self.columns[name] for name in AREAS)
+        share = np.divide(length, gross, out=np.zeros_like(length), where=gross > 0)
+        return places | self.columns | {"pressure": self.pressure, "real_over_gross": share}
 
 
 def at_indentation(profile: Profile, trace: Trace, delta: float, count: int) -> Total:
@@ -197,7 +248,7 @@ def at_indentation(profile: Profile, trace: Trace, delta: float, count: int) -> 
     Raises:
         SceneError: the contact goes beyond the finger, or a slice beyond the trace.
     """
-    z, thickness = _places(profile, delta, count)
+    z, thickness = places(profile, delta, count)
     depth, width = np.maximum(delta - profile.rise(z), 0.0), np.asarray(profile.width(z), dtype=float)
     relative = depth / width
     deepest, force = trace.end
@@ -213,13 +264,14 @@ def at_indentation(profile: Profile, trace: Trace, delta: float, count: int) -> 
     return Total(delta, z, thickness, depth, scale * float(values["f_ext"][-1]), columns)
 
 
-def _places(profile: Profile, delta: float, count: int) -> tuple[Array, Array]:
+def places(profile: Profile, delta: float, count: int) -> tuple[Array, Array]:
     """Return places and thicknesses (m) of the slices of :func:`at_indentation`."""
     nodes, weights = _gauss(count)
     ends = np.array(profile.contact(delta)).reshape(-1, 2)
     middle, half = ends.mean(axis=1, keepdims=True), np.diff(ends) / 2
     phi = np.pi / 2 * nodes
-    return (middle + half * np.sin(phi)).ravel(), (half * np.cos(phi) * np.pi / 2 * weights).ravel()
+    z = (middle + half * np.sin(phi)).ravel()
+    return z, (half * np.cos(phi) * np.pi / 2 * weights).ravel() * profile.stretch(z)
 
 
 _gauss = cache(np.polynomial.legendre.leggauss)

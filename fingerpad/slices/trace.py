@@ -17,6 +17,8 @@ from variational.state import ContactState
 Array = NDArray[np.float64]
 NAMES = tuple(in_table("trace", SLICES))
 """Columns of every trace: N/m the forces, m the lengths. Others are of outputs with a rule of sums."""
+ADHESION = "f_adhesion"
+"""A further column, of skin that adheres without a voltage (N/m)."""
 LEAST = 3
 """Least number of points of a trace. A power law needs two, and the error of the interpolation leaves one out."""
 _NO_FORCE = 1e-12  # of the largest external force: values below it are roundoff
@@ -111,7 +113,7 @@ class Trace:
         values = np.exp(cubics(np.clip(at, first, np.log(self.depth[-1]))).T)
         values = np.where(touches, there * values * np.exp(slopes * np.minimum(at - first, 0.0)), 0.0)
         found = dict(zip(names, values, strict=True))
-        return found | {"f_t": found.pop("f_t/f_c") * (found["f_ext"] + found["f_electrostatic"])}
+        return found | {"f_t": found.pop("f_t/f_c") * borne(found)}
 
     def under(self, force: float) -> float:
         """Return the indentation (m) at an external force (N/m) between the first point and the end."""
@@ -127,8 +129,7 @@ class Trace:
 
         The sign of a column that is zero is 0.
         """
-        borne = self.columns["f_ext"] + self.columns["f_electrostatic"]
-        columns = self.columns | {"f_t/f_c": self.columns["f_t"] / borne}
+        columns = self.columns | {"f_t/f_c": self.columns["f_t"] / borne(self.columns)}
         names = [name for name in columns if name != "f_t"]
         slopes = {name: self._slope(abs(columns[name])) for name in names} | {"f_t/f_c": 0.0}
         # No shorter contact than one in which the mean pressure falls with the forces, and no other length within it.
@@ -148,6 +149,11 @@ class Trace:
         if values[0] <= 0 or values[1] <= 0:
             return 0.0
         return max(float(np.log(values[1] / values[0]) / np.log(self.depth[1] / self.depth[0])), 0.0)
+
+
+def borne(columns: dict[str, Array]) -> Array:
+    """Return what slices bear of a trace's columns (N/m): force, electrostatic attraction, and adhesion if there."""
+    return columns["f_ext"] + columns["f_electrostatic"] + columns.get(ADHESION, 0.0)
 
 
 def trace(
@@ -189,6 +195,8 @@ def columns(states: Sequence[ContactState], wavelength: float, outputs: Iterable
     """
     found = {name: [abs(getattr(state, name)) for state in states] for name in NAMES if name != "gross_width"}
     found["gross_width"] = [gross_width(state, wavelength) for state in states]
+    if not any(np.isnan(state.f_adhesion) for state in states):
+        found[ADHESION] = [state.f_adhesion for state in states]
     for each in outputs:
         with suppress(SceneError):
             values = [each.of(state) for state in states] if each.sum and each.compute else [np.nan]

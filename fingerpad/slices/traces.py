@@ -20,7 +20,7 @@ from fingerpad.scene.parameters import LINE, POINT, POWER
 from fingerpad.slices import errors
 from fingerpad.slices.finger import WholeFinger, in_order
 from fingerpad.slices.total import BeyondTrace, Total, at_force, profile
-from fingerpad.slices.trace import Trace
+from fingerpad.slices.trace import Trace, borne
 from variational.state import ContactState, Errors
 
 if TYPE_CHECKING:
@@ -115,7 +115,7 @@ def _section(traced: Traced, name: str, depth: float, wavelength: float) -> Cont
         **at,
         mu_app=mu_app,
         voltage=near.voltage,
-        f_contact=at["f_ext"] + at["f_electrostatic"],
+        f_contact=borne(at),
         bone_height=-depth,
         ridges_in_contact=near.ridges_in_contact,
         mesh_contact=end.mesh_contact,

@@ -124,9 +124,10 @@ class Cylinder:
             raise NoEquilibriumError(f"the force on a ridge is {f[~(f > 0)][0]:g} N/m; it must be greater than 0")
         modulus, h_0 = (np.broadcast_to(np.asarray(x, dtype=float), f.shape) for x in (self.modulus, self.h_0))
         loads = _Loads(f, modulus, h_0, np.arange(len(f)), self.tip)
-        count, every = len(f), len(_PRESSURES)
+        pressures = _PRESSURES[:: self.tip.stride]
+        count, every = len(f), len(pressures)
         grid = loads[np.tile(np.arange(count), every)]
-        beyond, values = (each.reshape(every, count) for each in self._excess(_PRESSURES, voltage, grid))
+        beyond, values = (each.reshape(every, count) for each in self._excess(pressures, voltage, grid))
         crossed = np.sign(values[:-1]) != np.sign(values[1:])
         none = ~crossed.any(axis=0) | (values[-1] <= 0)
         if none.any():
@@ -142,7 +143,7 @@ class Cylinder:
             near, found = self._excess(p_c, voltage, crossing, near)
             return found
 
-        roots = _roots(excess, (_PRESSURES[k], values[k, load]), (_PRESSURES[k + 1], values[k + 1, load]))
+        roots = _roots(excess, (pressures[k], values[k, load]), (pressures[k + 1], values[k + 1, load]))
         found = [np.flatnonzero(load == n) for n in range(count)]  # places of growing pressure
         last = np.array([places[-1] for places in found])
         p_c = roots[last]

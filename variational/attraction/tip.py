@@ -22,14 +22,14 @@ With p = 2 both are the same. :func:`kernel` has k and p of a profile of cosines
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.floating[Any]]
-_NODES, _WEIGHTS = (each / 2 for each in np.polynomial.legendre.leggauss(10))
-_CLOSE = 1e-14  # of a half-length, relative
+_NODES, _WEIGHTS = (each / 2 for each in np.polynomial.legendre.leggauss(7))
+_CLOSE = 1e-12  # of a half-length, relative; the next step would be of its square
 _ITERATIONS = 60
 _LEAST_POWER = 1.05  # of a profile beyond its flank: its contact force has to grow
 
@@ -39,6 +39,8 @@ class Tip(ABC):
 
     power: Any
     """p of the contact force over the length in contact."""
+    stride: ClassVar[int] = 1
+    """Roots are separated among every so many of the pressures: more costly tips have fewer."""
 
     def __getitem__(self, chosen: NDArray[np.intp]) -> Self:
         """Return the tips of some loads."""
@@ -100,6 +102,8 @@ class Round(Tip):
 class Power(Tip):
     """A tip that is flatter, or sharper, than a cylinder."""
 
+    stride = 4
+
     power: Array
     """p."""
     depth: Array
@@ -113,24 +117,25 @@ class Power(Tip):
         return np.asarray(np.asarray(f) / (self.depth * (a / self.half) ** self.power))
 
     def half_width(self, modulus: Array, f: Array, pull: Array) -> tuple[Array, Array]:
-        """Return the root by Newton's method, which is monotone from the right: the force is convex in a."""
-        p, grows, pulls = self.power, modulus * self.depth, pull * self.half
-        x = (f / grows) ** (1 / p) + (pulls / grows) ** (1 / (p - 1))
+        """Return the root by Newton's method in ln a, which is monotone: there the equation is concave."""
+        p, grows = self.power, modulus * self.depth
+        own, pulled = f / grows, pull * self.half / grows
+        with np.errstate(divide="ignore"):
+            y = np.maximum(np.log(own) / p, np.log(pulled) / (p - 1))
         for _ in range(_ITERATIONS):
-            power = grows * x ** (p - 1)
-            slope = p * power - pulls
-            step = (power * x - pulls * x - f) / slope
-            x = np.where(step < x, x - step, x / 2)
-            if np.all(abs(step) <= _CLOSE * x):
+            part = pulled * np.exp(y)
+            step = (p * y - np.log(part + own)) / (p - part / (part + own))
+            y = y - step
+            if np.all(abs(step) <= _CLOSE):
                 break
-        slope = p * grows * x ** (p - 1) - pulls
-        return self.half * x, self.half**2 * x / slope
+        x = np.exp(y)
+        return self.half * x, self.half**2 * x / (grows * (p * (pulled * x + own) / x - pulled))
 
     def gap(self, a: Array, beyond: Array, root: Array, angle: Array) -> tuple[Array, Array, Array]:
         """Return the gap beside a power law."""
         p, m = self.power, 1 + beyond
         k, most = self.depth * (a / self.half) ** p, np.arctan(root)
-        inside = most * sum(w * np.cos((0.5 + n) * most) ** (p - 1) for n, w in zip(_NODES, _WEIGHTS, strict=True))
+        inside = most * (_WEIGHTS @ np.exp((p - 1) * np.log(np.cos(np.multiply.outer(0.5 + _NODES, most)))))
         open_ = 2 / np.pi * (m**p * inside - angle)
         return k * open_, p * k / a * open_, k * 2 / np.pi * p * m ** (p - 1) * inside
 

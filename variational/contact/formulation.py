@@ -89,7 +89,7 @@ class Skin:
     elastic: Callable[[], Any]
     """Gives P N, the traction in the skin."""
     attraction: Any
-    """Electrostatic traction p_el cof F N."""
+    """Traction of the attractions, (p_el + p_ad) cof F N."""
     stiffness: Callable[[], Any]
     """Gives the constrained modulus of the skin over the facet's length (Pa/m)."""
     constant: Callable[[float], Any]

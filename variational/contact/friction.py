@@ -20,10 +20,9 @@ Its numbers become constants of the compiled form.
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
 from dataclasses import dataclass
 from numbers import Real
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -112,10 +111,6 @@ class Friction(Law, ABC):
             "give loads of a history a duration or a speed"
         )
         return [Caution("nothing_ages", text)]
-
-    def with_constants(self, constant: Callable[[float], Any]) -> Self:
-        """Return the law with what ``constant`` makes of each of its numbers."""
-        return self.with_values({name: constant(getattr(self, name)) for name in self.names()})
 
     def check(self) -> None:
         """Refuse what is no law of friction.

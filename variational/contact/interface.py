@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from variational.attraction import electroadhesion
+from variational.attraction.adhesion import Adhesion
 from variational.contact.formulation import Formulation
 from variational.contact.friction import Friction, law_of
 
@@ -25,6 +26,8 @@ class Interface:
     """What draws the skin to the screen; None leaves it out of the forms."""
     share: Callable[[np.ndarray], np.ndarray] | None = None
     """Voltage that attracts across air gaps (m), over :attr:`.Problem.voltage`; None where it is the same for all."""
+    adhesion: Adhesion | None = None
+    """What draws the skin to the screen without a voltage, beside the attraction; None leaves it out of the forms."""
 
     def __init__(
         self,
@@ -33,13 +36,17 @@ class Interface:
         h_0: float,
         attraction: electroadhesion.Attraction | None = electroadhesion.ELECTROSTATIC,
         share: Callable[[np.ndarray], np.ndarray] | None = None,
+        adhesion: Adhesion | None = None,
     ) -> None:
         """Take the laws as they are described above.
 
         Raises:
-            ValueError: friction is no law; in one sentence.
+            ValueError: friction or adhesion is no law; in one sentence.
         """
         law = law_of(friction)
+        if adhesion is not None:
+            adhesion.check()
         laws = {"formulation": formulation, "friction": law, "h_0": h_0, "attraction": attraction, "share": share}
+        laws["adhesion"] = adhesion
         for name, value in laws.items():
             object.__setattr__(self, name, value)

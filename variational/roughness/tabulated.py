@@ -29,7 +29,7 @@ _EPS_0 = 8.854e-12  # F/m, Table 3
 _SIDE = 4.0  # largest waves in the side of the surface whose scatter is meant
 
 
-class Curve:
+class _Curve:
     """A piecewise cubic through values at equal steps of an abscissa."""
 
     def __init__(self, x: Array, y: Array) -> None:
@@ -137,18 +137,18 @@ class TabulatedClosure(Named, Closure):
         return found
 
     @cached_property
-    def _gaps(self) -> Curve:
+    def _gaps(self) -> _Curve:
         """Logarithm of d_eq (m) over that of the pressure."""
         square = self._mean("inverse_square", self.h_0 / self.h_rms, self.field_in_contact) / self.h_rms**2
-        return Curve(np.log(self._nodes), np.log(square**-0.5 - self.h_0))
+        return _Curve(np.log(self._nodes), np.log(square**-0.5 - self.h_0))
 
     @cached_property
-    def _separation(self) -> Curve:
-        return Curve(np.log(self._nodes), np.log(self._mean("mean_gap") * self.h_rms))
+    def _separation(self) -> _Curve:
+        return _Curve(np.log(self._nodes), np.log(self._mean("mean_gap") * self.h_rms))
 
     @cached_property
-    def _area(self) -> Curve:
-        return Curve(np.log(self._nodes), np.log(self._mean("area")))
+    def _area(self) -> _Curve:
+        return _Curve(np.log(self._nodes), np.log(self._mean("area")))
 
     # -- answers ---------------------------------------------------------------------------------------
     def __call__(self, p_c: ArrayLike) -> AirGap:
@@ -186,7 +186,7 @@ class TabulatedClosure(Named, Closure):
         found = np.zeros(len(self._nodes))
         for low, high in breaking_gaps(voltage, self.h_0):
             found += self._mean("closer", high / self.h_rms) - self._mean("closer", low / self.h_rms)
-        return np.clip(Curve(np.log(self._nodes), found)(x)[0], 0.0, 1.0)
+        return np.clip(_Curve(np.log(self._nodes), found)(x)[0], 0.0, 1.0)
 
     def spread(self, p_c: ArrayLike) -> Array:
         """Return the standard deviation of d_eq (m) from one surface to the next; zero of one surface alone.
@@ -204,7 +204,7 @@ class TabulatedClosure(Named, Closure):
             gaps = square**-0.5 - self.h_0
             found += part * table.waves / _SIDE * (gaps.std(axis=0, ddof=1) if len(gaps) > 1 else 0.0)
         held = np.clip(np.asarray(p_c, dtype=float), *self.pressures)
-        return Curve(np.log(self._nodes), found)(np.log(held))[0]
+        return _Curve(np.log(self._nodes), found)(np.log(held))[0]
 
     def attraction(self, p_c: ArrayLike, voltage: float) -> Array:
         """Return the attraction (Pa) at mean contact pressures (Pa) and a voltage (V)."""

@@ -165,10 +165,13 @@ class Continuation:
         self._now = AcceptedState.of(self.coupling)
         return True
 
+    def _touches(self) -> bool:
+        """Return whether skin is in contact; collective."""
+        return bool(self.problem.mesh.comm.allreduce(bool((self.surface_state.p_n > 0).any()), op=MPI.LOR))
+
     def _bears(self) -> bool:
         """Return whether the screen bears the body, which the roundoff of a body in the air does not; collective."""
-        touches = bool((self.surface_state.p_n > 0).any())
-        return self.problem.mesh.comm.allreduce(touches, op=MPI.LOR) and float(self.solver.reaction[1]) > 0
+        return self._touches() and float(self.solver.reaction[1]) > 0
 
     def _clearance(self) -> float:
         """Return how far the lowest point of the skin is above the screen (m); collective."""
@@ -193,6 +196,8 @@ class Continuation:
                 slow = NotConverged(f"TOO_SMALL_STEPS, {most} of them, do not get to the end of the load", False)
                 raise StepFailed(self._describe(target, p.part, slow)) from slow
             step = min(p.step, 1 - p.part, self.step_scale * way.longest(p.part, self.problem.shortest_time))
+            if (law := self.problem.interface.adhesion) and self._touches():
+                step = min(step, self.step_scale * way.peels(self._now.height, law.reach))
             if 1 - p.part - step < 0.05 * step:
                 step = 1 - p.part
             attempt, within = Attempt(), step

@@ -6,9 +6,9 @@ and in loads over time, whose steps are small, it is the last one, which goes on
 :mod:`~variational.solvers.iteration` has the rules for steps.
 
 Where the iteration fails and mostly friction stays out of balance, points on the friction cone are first taken for
-slipping instead of sticking, or the other way round. Where hardly anything else stays, friction's springs are softened
-and stiffened again step by step.
-Or, if the caller asks for it, a part of the skin is taken to be about to jump on or off the screen, where the tangent
+slipping instead of sticking, or the other way round. A smaller step is cheaper than what comes next, which is for
+callers whose steps have been cut before. Where hardly anything else than friction stays, its springs are softened and
+stiffened again step by step. Or a part of the skin is taken to be about to jump on or off the screen, where the tangent
 has a negative direction, and the solve is repeated as pseudo-transient continuation: it moves slowly away from the
 equilibrium that is lost and ends in one of the unchanged equations.
 """
@@ -186,7 +186,8 @@ class Solver:
         """Find the equilibrium near ``x`` for the current loads and leave it in ``x`` and the problem's u.
 
         Args:
-            pseudo_transient: repeat as pseudo-transient continuation what full Newton steps do not manage.
+            pseudo_transient: repeat with softened friction, or as pseudo-transient continuation, what full Newton steps
+                do not manage.
             stop: when full Newton steps end.
             tried: whether full Newton steps from ``x`` have just failed, see :meth:`attempt`.
 
@@ -208,7 +209,7 @@ class Solver:
             self.problem.guess.value = SLIPS if self.problem.guess.value == STICKS else STICKS
             self.iteration.tangent.stale = True
             reason = run(self.x)
-        if reason <= 0 and friction and self._sideways() > _SIDEWAYS:
+        if reason <= 0 and friction and pseudo_transient and self._sideways() > _SIDEWAYS:
             reason = self._ease(start)
         if reason <= 0 and pseudo_transient:
             self.counts.pseudo_transient += 1

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 # How far one step may go: parts of sqrt(f_ext) and of U^2, and metres of the bone.
 _FORCE, _VOLTAGE, _SINK, _SLIDE = 0.134, 0.5, 40e-6, 120e-6
+_OF_REACH, _OF_DEPTH = 0.25, 0.2  # largest step of a bone that lifts adhering skin, over the reach and its depth
 _CONTINUES = 1.5  # shortest times of the time since then that count where a load goes on to change
 _AGES = 0.25  # longest step (s) over the time since the last change at once and the shortest time in which a law ages
 
@@ -135,6 +136,19 @@ class Way:
             steps.append((_SINK, abs(target.bone_height - a.height)))
         steps.append((_SLIDE, abs(self.length)))
         return float(min([1.0, *(scale * most / whole for most, whole in steps if whole > 0)]))
+
+    def peels(self, height: float, reach: float) -> float:
+        """Return the largest part of the target that one step may have where a bone lifts adhering skin.
+
+        The force is most negative within the reach of the adhesion, which a usual step would go past.
+
+        Args:
+            height: of the bone (m, change from unloaded).
+            reach: of the adhesion (m).
+        """
+        aim = self.target.bone_height
+        rises = aim is not None and aim > height
+        return max(_OF_REACH * reach, -_OF_DEPTH * height) / (aim - self.start.height) if rises else 1.0
 
     def longest(self, part: float, shortest_time: float) -> float:
         """Return the largest part of the target that time lets one step have, after a part of it.

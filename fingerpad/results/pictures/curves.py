@@ -64,7 +64,7 @@ def surface(
     """Draw pressure, shear traction, attraction and gaps along the surface (Fig. 2 of Forsbach et al. 2023).
 
     Numbers above the pressure are those of the ridges in contact, 0 at the centre of the finger. A note says where the
-    mesh is too coarse for the pressure: where :func:`saw_teeth` exceeds a tenth.
+    mesh is too coarse for the pressure: where its saw teeth exceed a tenth.
 
     Args:
         path: of the PNG file; None for the figure alone.
@@ -91,7 +91,7 @@ def surface(
         return style.save(figure, path)
 
 
-def saw_teeth(p: Array) -> float:
+def _saw_teeth(p: Array) -> float:
     """Return the depth of the deepest saw tooth of the contact pressure over its peak.
 
     A tooth is a dip of the pressure between two larger ones, both within :data:`_TOOTH_SPAN` points, where every point
@@ -117,7 +117,7 @@ def _surface_title(letter: str, s: SurfaceProfile) -> str:
     words += f", L_R = {_MM * s.state.contact_length:.3g} mm"
     if _pressed(s):
         words += f", f_ext/L_R = {_KPA * s.state.f_ext / s.state.contact_length:.3g} kPa"
-    teeth = saw_teeth(s.p)
+    teeth = _saw_teeth(s.p)
     coarse = (
         f"mesh too coarse for the pressure: saw teeth of {100 * teeth:.0f} % of its peak" if teeth > _COARSE else ""
     )

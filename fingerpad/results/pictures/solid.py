@@ -101,7 +101,7 @@ def solid(whole: "WholeFinger", section: Profiles, path: Path | None, state: Con
 def _strips(total: Total, state: ContactState | None, spacing: float) -> tuple[Array, Array]:
     """Return pieces of ridges on the screen (mm), shape (pieces, 4, 3), and their mean pressure (kPa)."""
     z, columns = total.z, total.columns
-    x, parts = ridges_along(state, spacing, columns["gross_width"])
+    x, parts = _ridges_along(state, spacing, columns["gross_width"])
     length: Array = parts * columns["contact_length"]
     found, values = [], []
     for ridge, place in enumerate(x):
@@ -144,7 +144,7 @@ def footprint(
             z, colour = np.linspace(total.z.min(initial=0), total.z.max(initial=0), _ALONG), style.STATE[name]
             gross, touching = (np.interp(z, total.z, total.columns[key]) for key in ("gross_width", "contact_length"))
             axis.fill_betweenx(_MM * z, -_MM * gross / 2, _MM * gross / 2, color=colour, alpha=_LIGHT, lw=0)
-            x, parts = ridges_along((named or {}).get(name), spacing, gross)
+            x, parts = _ridges_along((named or {}).get(name), spacing, gross)
             lengths: Array = parts * touching
             for k, place in enumerate(x):
                 left, right = _MM * (place - lengths[k] / 2), _MM * (place + lengths[k] / 2)
@@ -168,7 +168,7 @@ def footprint(
         return style.save(figure, path)
 
 
-def ridges_along(state: ContactState | None, spacing: float, gross: Array) -> tuple[Array, Array]:
+def _ridges_along(state: ContactState | None, spacing: float, gross: Array) -> tuple[Array, Array]:
     """Return places of ridges (m) about the middle of the contact, and their parts of the contact length of slices.
 
     Args:

@@ -48,7 +48,7 @@ _LOOK = {
 }
 
 
-class Picture(Figure):
+class _Picture(Figure):
     """A figure that a notebook shows as the last value of a cell, without pyplot."""
 
     def _repr_png_(self) -> tuple[bytes, dict[str, float]]:
@@ -71,7 +71,7 @@ def look() -> Iterator[None]:
 
 def figure(height: float, title: str = "", width: float = WIDTH) -> Figure:
     """Return an empty figure of a size (in) with a title; its parts keep clear of each other."""
-    drawn = Picture(figsize=(width, height), layout="constrained")
+    drawn = _Picture(figsize=(width, height), layout="constrained")
     if title:
         drawn.suptitle(title)
     return drawn

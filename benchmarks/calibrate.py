@@ -1,0 +1,130 @@
+"""Calibration of keys by synthetic tables: keys found again, cover of the regions, choice of laws, people held out.
+
+environment/run python3 -m benchmarks.calibrate [--draw]     also: make calibrate
+
+Writes docs/calibrate.json, and from it the numbers of docs/calibrate.md; a quarter of an hour. Tables are made by
+the closed form from known values, with normal noise on logarithms, from seeds.
+"""
+
+import argparse
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+import fingerpad as fp
+from benchmarks.harness import keep, kept, made, main, page
+from fingerpad.measurements import prediction
+from fingerpad.measurements.table import observations
+
+NOISE, TABLES, CHOICES, PEOPLE = 0.03, 100, 10, 10
+FORCES, VOLTAGES = (0.1, 0.3, 0.6, 1.0), (0.0, 60.0, 120.0, 200.0)  # N, V
+QUANTITIES = ("friction force (N)", "gross area (m^2)", "air gap (m)")
+SCENE = fp.Scene(force=0.5, friction={"law": "Derjaguin", "mu_f": 0.2, "tau_0": 4e3})
+TRUTH = {  # of the five keys
+    "friction.mu_f": 0.3, "friction.tau_0": 2.5e3, "roughness.h_rms": 3.8e-6, "electric.d_i": 1.5e-6,
+    "slices.radius": 22e-3,
+}  # fmt: skip
+LAWS = {"Coulomb": {"friction": 0.3}, "shear stress": {"friction": {"law": "Derjaguin", "mu_f": 0.0, "tau_0": 9e3}}}
+SPREADS = {"friction": 0.4, "roughness.h_rms": 0.15}  # between people, of logarithms
+
+
+def table(scene: fp.Scene, conditions: Any, quantities: Any, noise: float, rng: Any, **more: Any) -> pd.DataFrame:
+    """Return a table of the closed form of a scene, with noise."""
+    rows = pd.DataFrame(conditions, columns=["force (N)", "voltage (V)"]).assign(**{each: 1.0 for each in quantities})
+    seen = observations(rows)
+    values = np.exp(prediction.ClosedForm(scene, (), seen.rows, seen.state).rows(scene))
+    values = values.reshape(len(rows), -1) * np.exp(noise * rng.normal(size=(len(rows), len(quantities))))
+    return rows.assign(**dict(zip(quantities, values.T, strict=True)), **more)
+
+
+def fitted(rows: pd.DataFrame, scene: fp.Scene, keys: Any, **more: Any) -> fp.Calibration:
+    """Return the calibration of a table, without files."""
+    return fp.calibrate(rows, scene, list(keys), out=None, **more)
+
+
+def grid(forces: Any = FORCES, voltages: Any = VOLTAGES) -> list[tuple[float, float]]:
+    """Return all pairs of force and voltage."""
+    return [(force, voltage) for force in forces for voltage in voltages]
+
+
+def _scene(values: dict[str, float], scene: fp.Scene = SCENE) -> fp.Scene:
+    return prediction.with_values(scene, values)
+
+
+def again() -> dict[str, float]:
+    """Return the largest relative error of the five keys without noise."""
+    rows = table(_scene(TRUTH), grid(), QUANTITIES, 0.0, np.random.default_rng(0))
+    found = fitted(rows, SCENE, TRUTH).values.value
+    return {key: float(found[key] / value - 1) for key, value in TRUTH.items()}
+
+
+def cover(count: int = TABLES) -> dict[str, int]:
+    """Return in how many tables with noise the regions contain the values that made them, by key."""
+    inside = dict.fromkeys(TRUTH, 0)
+    for seed in range(count):
+        rows = table(_scene(TRUTH), grid(), QUANTITIES, NOISE, np.random.default_rng(seed))
+        for key, v in fitted(rows, SCENE, TRUTH, evidence=False).values.iterrows():
+            inside[key] += bool(v.low <= TRUTH[key] <= v.high)
+    return inside
+
+
+def choices(count: int = CHOICES) -> dict[str, int]:
+    """Return for how many tables of each law it has less AICc than the other one, by eight forces without voltage."""
+    found = dict.fromkeys(LAWS, 0)
+    for name, law in LAWS.items():
+        for seed in range(count):
+            uncharged = grid(np.geomspace(0.1, 1.0, 8), (0.0,))
+            rows = table(fp.Scene(force=0.5, **law), uncharged, QUANTITIES[:1], NOISE, np.random.default_rng(seed))
+            laws = fitted(rows, fp.Scene(force=0.5), ["friction"]).evidence.set_index("name").AICc
+            found[name] += bool(laws[list(LAWS)].idxmin() == name)
+    return found
+
+
+def people(seed: int = 60) -> pd.DataFrame:
+    """Return a table of ten people at three forces and four voltages."""
+    rng, tables = np.random.default_rng(seed), []
+    for k in range(PEOPLE):
+        own = {key: value * np.exp(rng.normal() * SPREADS[key]) for key, value in _typical().items()}
+        conditions = grid((0.2, 0.5, 1.0), (0.0, 70.0, 140.0, 200.0))
+        scene = _scene(own, fp.Scene(force=0.5))
+        tables.append(table(scene, conditions, QUANTITIES[:1], NOISE, rng, participant=str(k + 1)))
+    return pd.concat(tables, ignore_index=True)
+
+
+def _typical() -> dict[str, float]:
+    return {"friction": 0.3, "roughness.h_rms": 3.4e-6}
+
+
+def held_out() -> dict[str, Any]:
+    """Return how many rows of each held-out person are within their band, and the time of one calibration."""
+    rows, inside, began = people(), list[int](), time.process_time()
+    whole = fitted(rows, fp.Scene(force=0.5), SPREADS)
+    seconds = time.process_time() - began
+    for k in range(PEOPLE):
+        found = fitted(rows, fp.Scene(force=0.5), SPREADS, hold_out={"participant": k + 1}, evidence=False).rows
+        held = found[found.held_out]
+        inside.append(int(held.measured.between(held.low, held.high).sum()))
+    return {"inside": inside, "of": len(rows) // PEOPLE, "rows": len(rows), "seconds": seconds,
+            "values": whole.values.reset_index(names="key").to_dict("records")}  # fmt: skip
+
+
+def compute(args: argparse.Namespace) -> None:
+    """Compute and keep the numbers."""
+    numbers = dict[str, Any]()
+    for part in (again, held_out, choices, cover):
+        print(f"{time.process_time():5.0f} s  {part.__name__}", flush=True)
+        numbers[part.__name__] = part()
+    keep("calibrate", numbers, made(), args.docs)
+
+
+def draw(docs: Path) -> Path:
+    """Put the numbers in place in docs/calibrate.md."""
+    return page(docs, "calibrate", "make calibrate", globals() | {"found": kept("calibrate", docs).numbers})
+
+
+if __name__ == "__main__":
+    sys.exit(main(__doc__, compute, draw))

@@ -1,0 +1,233 @@
+r"""Least squares with people: values common to all, their spread between people, and the evidence for a model.
+
+Rows have the logarithms y of what was measured. Person p has the parameters :math:`\theta + b_p` (logarithms too), with
+:math:`b_p` normal about 0 with the variances :math:`\Omega = diag(\omega^2)`. To first order in :math:`b_p`, with the
+Jacobian J at :math:`\theta`, the rows of a person are normal:
+
+.. math:: y_p \sim N(f_p(\theta),\; V_p), \qquad V_p = J_p \Omega J_p^T + \sigma^2 S_p ,
+
+with the rows' own variances S (the first-order method, Sheiner and Beal 1980, doi 10.1007/BF01060053; of the linear
+model Laird and Ware 1982, doi 10.2307/2529876). :math:`\theta` minimises the whitened squares and those of a normal
+prior, by :func:`scipy.optimize.least_squares`. Then :math:`\Omega` and, where it is not known, :math:`\sigma` maximise
+the restricted likelihood, and the two are repeated. The evidence is Akaike's criterion for few rows,
+
+.. math:: AICc = -2 \ln L + 2 K + \frac{2 K (K + 1)}{n - K - 1}
+
+of the whole likelihood, K parameters and variances, and n rows (Hurvich and Tsai 1989, doi 10.1093/biomet/76.2.297).
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+import scipy  # its parts are imported where they are used first
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+FEW = 3
+"""Number of people from which on a spread between them is estimated."""
+_STEP = 1e-4  # of a logarithm, for derivatives
+_FIRST = 0.3  # standard deviation of rows, and between people, of the first round
+_ROUNDS, _SAME = 12, 0.01  # of parameters and variances in turn; of -2 ln L, what changes no conclusion
+_ENDS = {"ftol": 1e-5, "xtol": 1e-5, "gtol": 1e-8, "max_nfev": 12}
+_SPREADS = (1e-4, 3.0)  # least and largest standard deviation of a logarithm
+_LEVEL = 0.95
+
+
+@dataclass(frozen=True, eq=False)
+class Data:
+    """Rows, and what is known of parameters beforehand; logarithms."""
+
+    y: Array
+    """Shape (rows,)."""
+    spread: Array
+    """Standard deviation of each row; all 1 where ``known`` is false."""
+    known: bool
+    """Whether the spreads are given; else their one scale is estimated."""
+    people: Sequence[NDArray[np.intp]]
+    """Rows of each person; those of all where there are none."""
+    centre: Array
+    """Mean of the prior, shape (parameters,)."""
+    width: float
+    """Its standard deviation."""
+    bounds: tuple[Array, Array]
+
+
+@dataclass(frozen=True, eq=False)
+class Estimate:
+    """Parameters, their variances and the rows at them."""
+
+    data: Data
+    theta: Array
+    fitted: Array
+    jacobian: Array
+    omega: Array
+    """Standard deviations between people, shape (parameters,); 0 where none is estimated."""
+    sigma: float
+    """Factor on the spreads of rows."""
+
+    # -- one person's rows -----------------------------------------------------------------------------
+    def _factors(self, omega: Array, sigma: float) -> list[Array]:
+        """Return the Cholesky factor of V of each person."""
+        found = []
+        for rows in self.data.people:
+            j = self.jacobian[rows] * omega
+            found.append(np.linalg.cholesky(j @ j.T + np.diag((sigma * self.data.spread[rows]) ** 2)))
+        return found
+
+    def white(self, values: Array) -> Array:
+        """Return values of the rows, shape (rows, …), whitened: with the variance 1, person by person."""
+        out = np.empty_like(values)
+        for rows, factor in zip(self.data.people, self._factors(self.omega, self.sigma), strict=True):
+            out[rows] = scipy.linalg.solve_triangular(factor, values[rows], lower=True)
+        return out
+
+    def deviance(self, omega: Array, sigma: float, restricted: bool) -> float:
+        """Return -2 ln L of these variances at the best linear parameters; restricted, or of the whole likelihood."""
+        pull = (self.data.centre - self.theta) / self.data.width**2
+        m, g, total = np.eye(len(pull)) / self.data.width**2, pull.copy(), float(pull @ pull) * self.data.width**2
+        for rows, factor in zip(self.data.people, self._factors(omega, sigma), strict=True):
+            both = np.column_stack([self.jacobian[rows], (self.data.y - self.fitted)[rows]])
+            j, r = np.hsplit(scipy.linalg.solve_triangular(factor, both, lower=True), [-1])
+            m, g, total = m + j.T @ j, g + j.T @ r[:, 0], total + float((r**2).sum())
+            total += 2 * float(np.log(np.diag(factor)).sum()) + len(rows) * math.log(2 * math.pi)
+        return total - float(g @ np.linalg.solve(m, g)) + restricted * float(np.linalg.slogdet(m)[1])
+
+    def variances(self, restricted: bool = True) -> tuple[Array, float, float]:
+        """Return the standard deviations between people and the factor on spreads of least deviance, and that."""
+        many, known = self.omega.any(), self.data.known
+        start = np.log([*(self.omega if many else []), *([] if known else [self.sigma])])
+
+        def split(x: Array) -> tuple[Array, float]:
+            return np.exp(x[: len(self.theta)]) if many else self.omega, self.sigma if known else math.exp(x[-1])
+
+        if not len(start):
+            return self.omega, self.sigma, self.deviance(self.omega, self.sigma, restricted)
+        bounds = [tuple(np.log(_SPREADS))] * len(start)
+        best = scipy.optimize.minimize(
+            lambda x: self.deviance(*split(x), restricted), start, method="L-BFGS-B", bounds=bounds
+        )
+        return (*split(best.x), float(best.fun))
+
+    # -- results -----------------------------------------------------------------------------------------
+    @property
+    def freedom(self) -> float:
+        """Degrees of freedom of Student's t: people less one, else rows less parameters; none of known spreads."""
+        if self.omega.any():
+            return len(self.data.people) - 1
+        return np.inf if self.data.known else max(len(self.data.y) - len(self.theta), 1)
+
+    @property
+    def quantile(self) -> float:
+        """Half width of the 95 % region over the standard error."""
+        return float(scipy.stats.t.ppf((1 + _LEVEL) / 2, self.freedom))
+
+    @cached_property
+    def covariance(self) -> Array:
+        """Of the parameters, shape (parameters, parameters)."""
+        j = self.white(self.jacobian)
+        return np.linalg.inv(j.T @ j + np.eye(len(self.theta)) / self.data.width**2)
+
+    @cached_property
+    def directions(self) -> tuple[Array, Array]:
+        """Standard errors of combinations of parameters by the rows alone, the best known first, and their vectors."""
+        _, values, vectors = np.linalg.svd(self.white(self.jacobian), full_matrices=True)
+        every = np.concatenate([values, np.zeros(len(self.theta) - len(values))])
+        return 1 / np.maximum(every, 1e-300), vectors
+
+    @cached_property
+    def shifts(self) -> list[tuple[Array, Array]]:
+        """Of each person the expected difference b from the common parameters, and the covariance of their sum."""
+        found = []
+        for rows, factor in zip(self.data.people, self._factors(self.omega, self.sigma), strict=True):
+            both = np.column_stack([self.jacobian[rows], (self.data.y - self.fitted)[rows]])
+            own = np.diag(self.omega**2) @ self.jacobian[rows].T @ scipy.linalg.cho_solve((factor, True), both)
+            left = np.eye(len(self.theta)) - own[:, :-1]
+            found.append((own[:, -1], left @ self.covariance @ left.T + left @ np.diag(self.omega**2)))
+        return found
+
+    def predicted(self, values: Array, jacobian: Array, spread: Array, person: int | None) -> tuple[Array, Array]:
+        """Return logarithms of new rows and their standard deviations.
+
+        Args:
+            values: of the model at the common parameters, shape (rows,).
+            jacobian: there.
+            spread: of the rows, by which ``sigma`` is multiplied.
+            person: number of a person whose rows were fitted; None of another one, who adds the spread between people.
+        """
+        shift, of_both = 0.0 * self.theta, self.covariance + np.diag(self.omega**2)
+        if person is not None:
+            shift, of_both = self.shifts[person]
+        variance = np.einsum("ik,kl,il->i", jacobian, of_both, jacobian) + (self.sigma * spread) ** 2
+        return values + jacobian @ shift, np.sqrt(variance)
+
+    @cached_property
+    def criterion(self) -> float:
+        """AICc, see above; infinite where there are too few rows."""
+        count = len(self.theta) + np.count_nonzero(self.omega) + (not self.data.known)
+        left = len(self.data.y) - count - 1
+        return self.variances(restricted=False)[-1] + (2 * count * (1 + (count + 1) / left) if left > 0 else np.inf)
+
+
+def slopes(model: Callable[[Array], Array], theta: Array, here: Array) -> Array:
+    """Return the Jacobian of a model, whose value at the parameters is ``here``, by differences.
+
+    Raises:
+        ValueError: the model has no value on either side.
+    """
+    columns = []
+    for k in range(len(theta)):
+        for step in (_STEP, -_STEP):
+            beside = model(theta + step * (np.arange(len(theta)) == k))
+            if np.isfinite(beside).all():
+                columns.append((beside - here) / step)
+                break
+        else:
+            raise ValueError(f"parameter {k} has no value on either side")
+    return np.column_stack(columns)
+
+
+def estimate(model: Callable[[Array], Array], start: Array, data: Data) -> Estimate:
+    """Return the parameters of a model and their variances.
+
+    Args:
+        model: returns the logarithms of the rows at parameters; NaN where it has no answer.
+        start: parameters at which it has one.
+        data: the rows.
+
+    Raises:
+        ValueError: the model has no answer beside the start.
+    """
+    many, values, jacobians = len(data.people) >= FEW, dict[bytes, Array](), dict[bytes, Array]()
+
+    def at(x: Array) -> Array:
+        if x.tobytes() not in values:
+            values[x.tobytes()] = model(x)
+        return values[x.tobytes()]
+
+    def slope(x: Array) -> Array:
+        if x.tobytes() not in jacobians:
+            jacobians[x.tobytes()] = slopes(model, x, at(x))
+        return jacobians[x.tobytes()]
+
+    scale = 1.0 if data.known else _FIRST
+    found = Estimate(data, start, at(start), slope(start), np.full_like(start, _FIRST * many), scale)
+    pull, deviance = np.eye(len(start)) / data.width, np.inf
+    for _ in range(_ROUNDS):
+        before = found
+        solved = scipy.optimize.least_squares(
+            lambda x, by=before: np.concatenate([by.white(at(x) - data.y), pull @ (x - data.centre)]),
+            before.theta,
+            lambda x, by=before: np.vstack([by.white(slope(x)), pull]),
+            bounds=data.bounds,
+            **_ENDS,
+        )
+        found = Estimate(data, solved.x, at(solved.x), slope(solved.x), before.omega, before.sigma)
+        omega, sigma, now = found.variances()
+        found = replace(found, omega=omega, sigma=sigma)
+        if deviance - now < _SAME:
+            break
+        deviance = now
+    return found
