@@ -35,6 +35,7 @@ from fingerpad.model.state import broken
 from fingerpad.results.data import Cost
 from fingerpad.results.files import below
 from fingerpad.results.provenance import provenance
+from fingerpad.results.quantities import OUTPUTS
 from fingerpad.results.result import Result
 from fingerpad.runs import batch
 from fingerpad.runs.context import RunContext
@@ -87,7 +88,7 @@ class FineSolver:
         estimate.compare(path if same else solve_again(model.changed(mesh=coarser), path.states, self._comm), fine)
         if fine.stiffer is not None:
             estimate.penalty = rigid(fine.values(), fine.stiffer.values())
-        return Fine(with_errors(estimate, {_SLIP: state})[_SLIP], fine)
+        return Fine(with_errors(estimate, {_SLIP: state}, OUTPUTS)[_SLIP], fine)
 
 
 class Chain:

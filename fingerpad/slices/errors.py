@@ -246,8 +246,9 @@ def remarks(forces: Iterable[float], names: Collection[str] = tuple(COMPARED)) -
     """Return what is known of the error of quantities at forces (N), a sentence for neighbours that share it."""
     compared = {name: text for name, text in COMPARED.items() if name in names}
     found = []
-    for words, same in groupby(sorted(set(forces) if compared else ()), lambda force: _remark(force, compared)):
-        numbers = [f"{force:.4g}" for force in same]
+    rounded = sorted({float(f"{force:.4g}") for force in forces} if compared else ())  # by different sums of one force
+    for words, same in groupby(rounded, lambda force: _remark(force, compared)):
+        numbers = [f"{force:g}" for force in same]
         at = ", ".join(numbers) if len(numbers) < 3 else f"{numbers[0]} to {numbers[-1]}"
         beside = "beside a finger of 20 × 14 × 28 mm in three dimensions"
         found.append(f"Error of the sum of slices at {at} N, {beside}: {words}.")
