@@ -32,7 +32,7 @@ from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.model.report import Clock
 from fingerpad.model.simulation import RestartRequired, Simulation
 from fingerpad.model.state import broken
-from fingerpad.results.data import Cost
+from fingerpad.results.data import Cost, valued
 from fingerpad.results.files import below
 from fingerpad.results.provenance import provenance
 from fingerpad.results.quantities import OUTPUTS
@@ -219,7 +219,8 @@ def _of_state(
         DEFAULT_MODEL,
         None,
         None,
-        state,
+        valued(state, OUTPUTS),
+        outputs=OUTPUTS,
         cost=replace(cost, newton_iterations=newton, factorisations=factorisations, unknowns=unknowns),
         failure=broken(state, finger.force_error, coefficient(scene)),
         notes=(f"This is full slip alone, {words}: {state.reached}.", *notes),
