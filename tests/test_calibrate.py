@@ -112,7 +112,7 @@ def test_layer_is_found_by_presses_about_the_finger(monkeypatch):
 
     Rows are power laws of the key about the fitted finger only: 1 % is left where it was moved by as much.
     """
-    of = module.prediction.press.of
+    of = module.prediction.cylinders.press.of
 
     def pressed(scene):
         softer = scene.materials.subcutis.shear_modulus / 25e3
@@ -123,7 +123,7 @@ def test_layer_is_found_by_presses_about_the_finger(monkeypatch):
         }
         return module.replace(whole, **changed)
 
-    monkeypatch.setattr(module.prediction.press, "of", pressed)
+    monkeypatch.setattr(module.prediction.cylinders.press, "of", pressed)
     monkeypatch.setattr(type(module.prediction.MODEL), "check", lambda *_: None)
     truth = {"materials.subcutis.shear_modulus": 15e3, "friction": 0.3}
     rows = table(truth, quantities=["friction force (N)", "gross area (m^2)", "depth (m)"])

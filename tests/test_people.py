@@ -8,13 +8,15 @@ from scipy import stats
 
 import fingerpad as fp
 from fingerpad.reduced import people_band, press
-from fingerpad.reduced.closed_form import closed_form
 from fingerpad.reduced.closure_band import closures, friction
 from fingerpad.reduced.cylinders import over_forces
 from fingerpad.reduced.people_band import Fingers, with_people
 from fingerpad.report import run_page
 from fingerpad.scene.fingers import FINGERS
 from fingerpad.scene.people import SPREADS, with_factors
+from fingerpad.slices.total import at_force, profile
+from fingerpad.slices.trace import trace
+from fingerpad.slices.traces import grid
 from tests.test_closures import Held
 
 
@@ -121,6 +123,12 @@ def test_people_of_a_range_are_the_closed_form_s(keys):
         assert mu_app == pytest.approx(over_forces(one, [75.0], "full_slip", pressed)[0].mu_app, rel=1e-9)
 
 
+def traced(scene, known):
+    """Return the trace of full slip by a press."""
+    states = known.lowered(over_forces(scene, grid(200.0, 400.0), "full_slip", known), "full_slip")
+    return trace(states, scene.geometry.ridge_wavelength)
+
+
 def test_a_force_in_newtons_is_the_same_for_all():
     """A finger of another size and stiffness: the ratio of the middle section is that of whole fingers.
 
@@ -129,7 +137,7 @@ def test_a_force_in_newtons_is_the_same_for_all():
     scene, factors = fp.Scene(force="0.5 N", voltage=200.0), {"size": 1.2, "stiffness": 1.2}
     one = with_factors(scene, factors)
     whole = [
-        closed_form(each, known).finger(0.5).mu_app
+        at_force(profile(each.slices), traced(each, known or press.of(each)), 0.5, each.slices.count).mu_app
         for each, known in ((one, of_person(press.of(scene), 1.2, 1.2)), (scene, None))
     ]
     (slip,), laws = over_forces(scene, [75.0], "full_slip"), ([scene.closure()] * 2, [scene.friction_law()] * 2)

@@ -35,6 +35,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fingerpad.launcher import needed_by
 from fingerpad.model.cautions import examine, on_scene, sticking
 from fingerpad.reduced import cylinder_errors, press
 from fingerpad.reduced.model import STATES, Model, check_supported, reduced_state
@@ -84,6 +85,14 @@ class Cylinders(Model):
     name, words = "cylinders", "A closed form of charged cylinders"
     traces = "traces of charged cylinders, indentations without voltage"
     sums = True
+
+    def check(self, scene: Scene) -> None:
+        """Refuse a scene that it does not answer for; have its finger pressed where that has not been done."""
+        super().check(scene)
+        if press.known(scene) is None:
+            with needed_by("the press of a finger"):
+                from fingerpad.runs import press as runs  # finite elements
+            runs.press(scene)
 
     def solve(self, scene: Scene, context: "RunContext") -> Result:
         """Return the answer of :func:`solve`."""
