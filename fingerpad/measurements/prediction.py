@@ -27,6 +27,7 @@ from fingerpad.slices.trace import Trace
 from fingerpad.slices.traces import MARGIN
 
 Array = NDArray[np.float64]
+Powers = Mapping[str, Array]
 MODEL = cylinders.Cylinders()
 _CLOSE, _STEPS = 1e-9, 8  # of the logarithm of a force; steps of the secant method
 _MORE, _FURTHEST = 1.5, 10.0  # of the largest force of a trace that is too short: a factor, and the largest one
@@ -39,12 +40,7 @@ class ClosedForm:
     """Rows of a table as functions of keys of a scene."""
 
     def __init__(
-        self,
-        scene: Scene,
-        keys: Sequence[str],
-        rows: pd.DataFrame,
-        state: str,
-        known: Mapping[str, Array] | None = None,
+        self, scene: Scene, keys: Sequence[str], rows: pd.DataFrame, state: str, known: Powers | None = None
     ) -> None:
         """Take rows of :func:`fingerpad.measurements.table.observations`.
 
@@ -64,7 +60,7 @@ class ClosedForm:
         self._different = of.drop_duplicates(ignore_index=True)
         self._row = of.groupby(_CONDITIONS, dropna=False, sort=False).ngroup().to_numpy()
         self._depths, self._further, self.exponents = dict[Any, float](), 1.0, dict(known or {})
-        for key in {key for key in keys if key.startswith(_PRESSED)} - self.exponents.keys():
+        for key in (key for key in keys if key.startswith(_PRESSED) and key not in self.exponents):
             value, ends = value_of(scene, key), list[Array]()
             for factor in (math.exp(_PART), math.exp(-_PART)):
                 other = with_values(scene, {key: value * factor})

@@ -43,9 +43,8 @@ _OF_SIZE = (  # lengths that go with the finger's
 )
 _SC = 300e-6  # m, stratum corneum of the fitted finger
 _PAD = 28e-3  # m, radius and length of the default pad along the finger
-SOFT = {"subcutis": 25e3, "dermis": 2.55e3, "viable_epidermis": 61.75e3, "stratum_corneum": 86.76e3}
-"""Shear moduli (Pa) of the default finger's soft layers (Table 2)."""
-_FITTED = {"subcutis": 2.5e3, "dermis": 6.7e3, "viable_epidermis": 0.5e6, "stratum_corneum": 0.5e6}  # the same, fitted
+SOFT = {"subcutis": 2.5e3, "dermis": 6.7e3, "viable_epidermis": 0.5e6, "stratum_corneum": 0.5e6}
+"""Shear moduli (Pa) of the fitted finger's soft layers."""
 _SHEAR = 14e3  # Pa, of wet ridges
 AIR_GAP = {
     "BearingArea": 2.69e-6,
@@ -136,7 +135,7 @@ def _shape(ridges: float, size: float) -> dict[str, float]:
 
 def _moduli(factor: float = 1.0) -> dict[str, float]:
     """Return the shear moduli of the soft layers, in parts of the fitted ones."""
-    return {f"materials.{layer}.shear_modulus": _round(factor * value) for layer, value in _FITTED.items()}
+    return {f"materials.{layer}.shear_modulus": _round(factor * value) for layer, value in SOFT.items()}
 
 
 def _surface(young: float, tissue: str, leak: str) -> dict[str, Any]:
@@ -156,10 +155,7 @@ _GEOMETRY = (
         "0.38 ± 0.07 of the gross area",
         ("share_db1", "share_db2"),
     ),
-    Trait(
-        {"geometry.sc_thickness": _SC},
-        "Some 300 µm on a fingertip (doi 10.1098/rsif.2012.0467, a caption)",
-    ),
+    Trait({"geometry.sc_thickness": _SC}, "Some 300 µm on a fingertip (doi 10.1098/rsif.2012.0467, a caption)"),
     Trait(
         _moduli(),
         "Young's moduli of stratum corneum and epidermis, across, are 1 to 2 MPa each, without a difference (Geerligs "
@@ -167,11 +163,7 @@ _GEOMETRY = (
         "abstract); both are 0.5 of that, fitted to depth and gross area under 1 N",
         ("gross_1n", "depth_1n"),
     ),
-    Trait(
-        {_H_RMS: AIR_GAP["BearingArea"]},
-        "An air gap of 2 µm where ridges bear 18 kPa, for each closure",
-        ("gap",),
-    ),
+    Trait({_H_RMS: AIR_GAP["BearingArea"]}, "An air gap of 2 µm where ridges bear 18 kPa, for each closure", ("gap",)),
 )
 _DRY = (
     Trait({"friction": 0.25}, "Dry touchscreens, short contact", ("friction_input",)),
@@ -197,10 +189,7 @@ FINGERS = MappingProxyType(
             "a woman, 18 years or older",
             (
                 *_FITTED_FINGER,
-                Trait(
-                    {"geometry.ridge_wavelength": 441e-6},
-                    f"Mean of 33 women; 23 men have 492 µm. {_RIDGES}",
-                ),
+                Trait({"geometry.ridge_wavelength": 441e-6}, f"Mean of 33 women; 23 men have 492 µm. {_RIDGES}"),
                 Trait(
                     _shape(0.913, 0.913),
                     "Assumption: all lengths go with the distance of ridges, 0.913 of the fitted finger's",
@@ -216,10 +205,7 @@ FINGERS = MappingProxyType(
             "a child of 3 to 10 years",
             (
                 *_FITTED_FINGER,
-                Trait(
-                    {"geometry.ridge_wavelength": 354e-6},
-                    f"Mean of 21 children of 4 to 10 years. {_RIDGES}",
-                ),
+                Trait({"geometry.ridge_wavelength": 354e-6}, f"Mean of 21 children of 4 to 10 years. {_RIDGES}"),
                 Trait(
                     _shape(0.733, 0.876) | {"geometry.ridge_count": 65},
                     "Index fingers of 160 children of 3 to 10 years have a mean diameter, by girth, of 15 mm (doi "
