@@ -115,8 +115,7 @@ def test_people_of_a_range_are_the_closed_form_s(keys):
     scene = fp.Scene(voltage=150.0, **keys)
     (slip,), parts = over_forces(scene, [75.0], "full_slip"), np.random.default_rng(1).random((12, len(SPREADS)))
     factors = {name: spread.factor(column) for (name, spread), column in zip(SPREADS.items(), parts.T, strict=True)}
-    laws = [scene.closure()] * 12, [scene.friction_law()] * 12
-    found = Fingers(scene, slip, None, False, factors, *laws).mu_app()
+    found = Fingers(scene, slip, None, False, factors).mu_app()
     for k, mu_app in enumerate(found):
         one = with_factors(scene, {name: each[k] for name, each in factors.items()})
         pressed = of_person(press.of(scene), factors["size"][k], factors["stiffness"][k])
@@ -140,20 +139,21 @@ def test_a_force_in_newtons_is_the_same_for_all():
         at_force(profile(each.slices), traced(each, known or press.of(each)), 0.5, each.slices.count).mu_app
         for each, known in ((one, of_person(press.of(scene), 1.2, 1.2)), (scene, None))
     ]
-    (slip,), laws = over_forces(scene, [75.0], "full_slip"), ([scene.closure()] * 2, [scene.friction_law()] * 2)
+    (slip,) = over_forces(scene, [75.0], "full_slip")
     both = {name: np.array([factor, 1.0]) for name, factor in factors.items()}
-    here, there = Fingers(scene, slip, None, True, both, *laws).mu_app()
+    here, there = Fingers(scene, slip, None, True, both).mu_app()
     assert here / there == pytest.approx(whole[0] / whole[1], rel=3e-3)
 
 
-def test_other_closures_among_people_have_their_numbers(result):
-    """Fingers of all closures together, with the numbers and the missing ones that each has alone."""
-    slip = replace(result.full_slip, voltage=200.0)
+def test_people_of_other_closures_have_their_numbers(result):
+    """With the numbers and the missing ones that each closure has."""
+    slip, one = replace(result.full_slip, voltage=200.0), {"size": np.ones(2)}
     laws = [*closures(result.scene.closure()).values()]
-    one = np.ones(len(laws))
-    fingers = Fingers(result.scene, slip, None, False, {"size": one}, laws, [result.scene.friction_law()] * len(laws))
     expected = [friction(result.scene, slip, law, None).mu_app for law in laws]
-    assert np.isinf(expected).any() and fingers.mu_app() == pytest.approx(expected, rel=1e-9)
+    for law, mu_app in zip(laws, expected, strict=True):
+        fingers = Fingers(result.scene.replace(roughness=law), slip, None, False, one)
+        assert fingers.mu_app() == pytest.approx([mu_app] * 2, rel=1e-9)
+    assert np.isinf(expected).any()
 
 
 def test_text_report_and_files_have_the_range(result):

@@ -99,12 +99,17 @@ class Study:
         factors = {name: SPREADS[name].factor(part[name]) for name in self.names if name in SPREADS}
         if _COATED in part:
             factors[_COATED] = np.interp(part[_COATED], [0, 1], _COATING)
-        models, laws = [*self.closures.values()], [*self.laws]
-        chosen = ((part.get(name, 0 * points[:, 0]), of) for name, of in ((_MODELS, models), (LAW, laws)))
-        levels: Any = [[of[k] for k in np.minimum(len(of) * at, len(of) - 1).astype(int)] for at, of in chosen]
-        result, head = self.result, self.result.headline
-        slip: Any = result.full_slip
-        mu_app = Fingers(result.scene, slip, None, head.of == WHOLE, factors, *levels).mu_app()
+        result, head, mu_app = self.result, self.result.headline, np.empty(len(points))
+        levels = [(model, law) for model in self.closures.values() for law in self.laws]
+        k, n = (
+            np.minimum(len(of) * part.get(name, 0 * mu_app), len(of) - 1).astype(int)
+            for name, of in ((_MODELS, self.closures), (LAW, self.laws))
+        )
+        for level, (model, law) in enumerate(levels):
+            if (mine := k * len(self.laws) + n == level).any():
+                scene = result.scene.model_copy(update={"roughness": model, "friction": law})
+                own = {name: each[mine] for name, each in factors.items()}
+                mu_app[mine] = Fingers(scene, result.full_slip, None, head.of == WHOLE, own).mu_app()  # type: ignore[arg-type]
         self.count, self.lost = self.count + len(mu_app), self.lost + int(np.isinf(mu_app).sum())
         mu_app = np.minimum(mu_app, mu_app[np.isfinite(mu_app)].max())
         share = head.error / head.value if _SOLUTION in part else 0.0
