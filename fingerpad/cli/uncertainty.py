@@ -13,6 +13,7 @@ that with all that it has in common with others. I. M. Sobol' 2001, Math. Comput
 et al. 2010, doi 10.1016/j.cpc.2009.09.018, by SALib (Herman and Usher 2017, doi 10.21105/joss.00097, MIT licence).
 """
 
+import itertools
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -100,16 +101,16 @@ class Study:
         if _COATED in part:
             factors[_COATED] = np.interp(part[_COATED], [0, 1], _COATING)
         result, head, mu_app = self.result, self.result.headline, np.empty(len(points))
-        levels = [(model, law) for model in self.closures.values() for law in self.laws]
-        k, n = (
+        chosen = (
             np.minimum(len(of) * part.get(name, 0 * mu_app), len(of) - 1).astype(int)
             for name, of in ((_MODELS, self.closures), (LAW, self.laws))
         )
-        for level, (model, law) in enumerate(levels):
-            if (mine := k * len(self.laws) + n == level).any():
-                scene = result.scene.model_copy(update={"roughness": model, "friction": law})
-                own = {name: each[mine] for name, each in factors.items()}
-                mu_app[mine] = Fingers(scene, result.full_slip, None, head.of == WHOLE, own).mu_app()  # type: ignore[arg-type]
+        group = np.ravel_multi_index(tuple(chosen), (len(self.closures), len(self.laws)))
+        for k, (model, law) in enumerate(itertools.product(self.closures.values(), self.laws)):
+            scene = result.scene.model_copy(update={"roughness": model, "friction": law})
+            own: Any = (scene, result.full_slip, None, head.of == WHOLE)
+            if (mine := group == k).any():
+                mu_app[mine] = Fingers(*own, {name: each[mine] for name, each in factors.items()}).mu_app()
         self.count, self.lost = self.count + len(mu_app), self.lost + int(np.isinf(mu_app).sum())
         mu_app = np.minimum(mu_app, mu_app[np.isfinite(mu_app)].max())
         share = head.error / head.value if _SOLUTION in part else 0.0

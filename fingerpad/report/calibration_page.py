@@ -70,8 +70,7 @@ def remarks(found: Any) -> list[str]:
     """Return what a reader must know beside the tables."""
     fitted, held = found.rows[~found.rows.held_out], found.rows[found.rows.held_out]
     people = fitted.participant.nunique()
-    of = f" of {people} participants" if people > 1 else ""
-    lines = [f"Fitted to {len(fitted)} values{of}."]
+    lines = [f"Fitted to {len(fitted)} values{f' of {people} participants' if people > 1 else ''}."]
     lines += [] if found.evidence.empty else ["AICc compares closures and friction laws, the least is the best."]
     if people > 1 and not found.values.spread.any():
         lines.append("There are too few participants for a spread between them: they are taken as one.")
