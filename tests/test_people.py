@@ -14,9 +14,6 @@ from fingerpad.reduced.people_band import Fingers, with_people
 from fingerpad.report import run_page
 from fingerpad.scene.fingers import FINGERS
 from fingerpad.scene.people import SPREADS, with_factors
-from fingerpad.slices.total import at_force, profile
-from fingerpad.slices.trace import trace
-from fingerpad.slices.traces import grid
 from tests.test_closures import Held
 
 
@@ -92,40 +89,30 @@ def test_one_spread_has_its_own_quantiles(result, monkeypatch):
     assert [found["low"], found["high"]] == pytest.approx(0.25 * quantiles(name, [0.05, 0.95]), rel=2e-3)
 
 
-def of_person(known, size, stiffness):
-    """Return the press of a finger with lengths and moduli times those of another: as a dimensional analysis has it."""
-
-    def times(factor, by_state):
-        return {state: tuple(factor * each for each in values) for state, values in by_state.items()}
-
-    forces = tuple(size * stiffness * each for each in known.forces)
-    return replace(
-        known, forces=forces, lengths=times(size, known.lengths), indentations=times(size, known.indentations),
-        roll=size * stiffness * known.roll,
-    )  # fmt: skip
-
-
 @pytest.mark.parametrize(
     "keys",
     [{}, {"friction": fp.Derjaguin(mu_f=0.1, tau_0=6e3)}, {"finger": "fitted"}],
     ids=["Coulomb", "shear stress", "flat tips"],
 )
 def test_people_of_a_range_are_the_closed_form_s(keys):
-    """The same people one by one as scenes of the closed form with their presses, to roundoff of its roots."""
+    """The same people one by one as scenes, whose presses are those of similar fingers, to roundoff of its roots."""
     scene = fp.Scene(voltage=150.0, **keys)
     (slip,), parts = over_forces(scene, [75.0], "full_slip"), np.random.default_rng(1).random((12, len(SPREADS)))
-    factors = {name: spread.factor(column) for (name, spread), column in zip(SPREADS.items(), parts.T, strict=True)}
+    factors = {
+        name: spread.factor(column).round(6) for (name, spread), column in zip(SPREADS.items(), parts.T, strict=True)
+    }
     found = Fingers(scene, slip, None, False, factors).mu_app()
     for k, mu_app in enumerate(found):
         one = with_factors(scene, {name: each[k] for name, each in factors.items()})
-        pressed = of_person(press.of(scene), factors["size"][k], factors["stiffness"][k])
-        assert mu_app == pytest.approx(over_forces(one, [75.0], "full_slip", pressed)[0].mu_app, rel=1e-9)
+        assert mu_app == pytest.approx(over_forces(one, [75.0], "full_slip")[0].mu_app, rel=1e-9)
 
 
-def traced(scene, known):
-    """Return the trace of full slip by a press."""
-    states = known.lowered(over_forces(scene, grid(200.0, 400.0), "full_slip", known), "full_slip")
-    return trace(states, scene.geometry.ridge_wavelength)
+def test_person_has_a_press_and_another_finger_has_none():
+    """With one length or one layer changed alone it is no similar finger."""
+    (person,) = fp.people(1, 0, finger="child")
+    assert press.known(person).lengths["charged"][0] != press.known(fp.Scene(finger="child")).lengths["charged"][0]
+    for changes in ({"geometry": {"ridge_wavelength": 2e-3}}, {"materials": {"subcutis": {"shear_modulus": 1e3}}}):
+        assert press.known(person.replace(**changes)) is None
 
 
 def test_a_force_in_newtons_is_the_same_for_all():
@@ -135,10 +122,7 @@ def test_a_force_in_newtons_is_the_same_for_all():
     """
     scene, factors = fp.Scene(force="0.5 N", voltage=200.0), {"size": 1.2, "stiffness": 1.2}
     one = with_factors(scene, factors)
-    whole = [
-        at_force(profile(each.slices), traced(each, known or press.of(each)), 0.5, each.slices.count).mu_app
-        for each, known in ((one, of_person(press.of(scene), 1.2, 1.2)), (scene, None))
-    ]
+    whole = [fp.run(each, model="cylinders").finger.full_slip.mu_app for each in (one, scene)]
     (slip,) = over_forces(scene, [75.0], "full_slip")
     both = {name: np.array([factor, 1.0]) for name, factor in factors.items()}
     here, there = Fingers(scene, slip, None, True, both).mu_app()

@@ -12,6 +12,9 @@ The default finger's is of full runs on facets of 10 µm up to 150 N/m, at full 
 (docs/models.json), and beyond by ratios of states on a coarser mesh (docs/loads.json); ``benchmarks.models`` and
 ``benchmarks.loads`` print the numbers. Other presses have no full slip.
 
+A person drawn from the spreads (:mod:`fingerpad.scene.people`) has the press of the finger by name: with lengths s and
+moduli m times its own, :math:`L(f) = s\,L_1(f / (s m))`. *Assumption*: the nail, of one modulus, is rigid.
+
 **Rolling.** Friction shears a finger, its bone rises, and ridges leave the screen, while those in contact keep their
 length. The part of the contact that is left is even in the friction force. In full runs of two flat fingers, over
 forces, voltages and laws of friction, it is about
@@ -22,6 +25,7 @@ forces, voltages and laws of friction, it is about
 """
 
 import json
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import cache
@@ -35,6 +39,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from fingerpad.results.files import replace_json
 from fingerpad.scene.messages import SceneError, show
+from fingerpad.scene.people import PLACES, with_factors
 from fingerpad.scene.scene import Scene
 from variational.roughness import gaps
 from variational.state import ContactState
@@ -138,7 +143,26 @@ _COLUMNS = ("lengths", "ridges", "indentations")
 
 def known(scene: Scene) -> Press | None:
     """Return the press of a scene's finger, None where it has not been made."""
-    return _found(name(scene))
+    return _found(name(scene)) or _similar(scene)
+
+
+def _similar(scene: Scene) -> Press | None:
+    """Return the press of a person: that of the finger by name on other scales; None of any other finger."""
+    middle, ends = Scene(finger=scene.finger), []
+    for each in (scene, middle):
+        ends.append((each.geometry.ridge_wavelength, getattr(each.materials.subcutis, "shear_modulus", math.nan)))
+    size, stiffness = (round(mine / own, PLACES) for mine, own in zip(*ends, strict=True))
+    try:
+        if name(with_factors(middle, {"size": size, "stiffness": stiffness})) != name(scene):
+            return None
+    except SceneError:  # values that no finger has
+        return None
+    own, scale = of(middle), size * stiffness
+    lengths, indentations = (
+        {state: tuple(size * x for x in values) for state, values in by_state.items()}
+        for by_state in (own.lengths, own.indentations)
+    )
+    return Press(tuple(scale * f_ext for f_ext in own.forces), lengths, own.ridges, indentations, scale * own.roll)
 
 
 def of(scene: Scene) -> Press:

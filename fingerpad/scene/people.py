@@ -27,7 +27,8 @@ Array = NDArray[np.float64]
 _CUT = 3.0  # of z
 _PRESSURES = np.geomspace(1e2, 1e6, 5)  # Pa, at which a law with other numbers is compared
 _MOST = 100_000  # people
-_PLACES = 6  # of a drawn factor after the point, fewer than those in which machines differ
+PLACES = 6
+"""Of a drawn factor after the point, fewer than those in which machines differ."""
 
 
 @dataclass(frozen=True)
@@ -135,7 +136,7 @@ def people(n: int, seed: int, finger: str = "fitted", **changes: Any) -> list[Sc
             raise SceneError(f"{name} is {show(value)}; it must be a whole number from {least} to {most}")
     middle = Scene(finger=finger).replace(**changes)
     parts = np.random.Generator(np.random.PCG64(int(seed))).random((n, len(SPREADS)))
-    columns = [each.factor(column).round(_PLACES) for each, column in zip(SPREADS.values(), parts.T, strict=True)]
+    columns = [each.factor(column).round(PLACES) for each, column in zip(SPREADS.values(), parts.T, strict=True)]
     return [with_factors(middle, dict(zip(SPREADS, row, strict=True))) for row in zip(*columns, strict=True)]
 
 
