@@ -17,9 +17,10 @@ from matplotlib.figure import Figure
 
 from benchmarks import harness
 from benchmarks.harness import keep, kept, made, page, picture
+from fingerpad.reduced.detection import FREQUENCIES as TABLED
+from fingerpad.reduced.detection import thresholds
 from fingerpad.results.pictures import style
-from fingerpad.runs.drive import FREQUENCIES as TABLED
-from fingerpad.runs.drive import drive, thresholds
+from fingerpad.runs.drive import drive
 from fingerpad.scene import Scene
 from fingerpad.scene.drive import REFERENCE, remains
 from fingerpad.scene.waveform import MEASURES

@@ -6,8 +6,6 @@ from fingerpad.measurements.calibrate import Calibration as Calibration
 from fingerpad.measurements.calibrate import calibrate as calibrate
 from fingerpad.measurements.compare import compare as compare
 from fingerpad.model.body import Body as Body
-from fingerpad.reduced.closed_form import ClosedForm as ClosedForm
-from fingerpad.reduced.closed_form import closed_form as closed_form
 from fingerpad.reduced.press import Press as Press
 from fingerpad.results.quantities import Output as Output
 from fingerpad.results.result import Result as Result

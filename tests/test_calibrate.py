@@ -112,7 +112,7 @@ def test_layer_is_found_by_presses_about_the_finger(monkeypatch):
 
     Rows are power laws of the key about the fitted finger only: 1 % is left where it was moved by as much.
     """
-    of = module.prediction.press.of
+    of = module.prediction.cylinders.press.of
 
     def pressed(scene):
         softer = scene.materials.subcutis.shear_modulus / 25e3
@@ -123,7 +123,7 @@ def test_layer_is_found_by_presses_about_the_finger(monkeypatch):
         }
         return module.replace(whole, **changed)
 
-    monkeypatch.setattr(module.prediction.press, "of", pressed)
+    monkeypatch.setattr(module.prediction.cylinders.press, "of", pressed)
     monkeypatch.setattr(type(module.prediction.MODEL), "check", lambda *_: None)
     truth = {"materials.subcutis.shear_modulus": 15e3, "friction": 0.3}
     rows = table(truth, quantities=["friction force (N)", "gross area (m^2)", "depth (m)"])
@@ -170,7 +170,6 @@ def test_participant_that_is_held_out_is_predicted(people):
     assert own.measured.between(own.low, own.high).mean() > 0.9
     assert np.log(held.high / held.low).min() > 5 * np.log(own.high / own.low).max()
     assert found.values.spread["friction"] == pytest.approx(0.35, abs=0.15)  # of five, of whom it is 0.37
-    assert found.people.friction["P5"] == pytest.approx(1.6 * 0.31, rel=0.1)
 
 
 # -- tables and refusals -----------------------------------------------------------------------------------------------
@@ -205,7 +204,7 @@ ROWS = ["0.2,0,0.3", "0.4,0,0.3", "0.2,150,0.5", "0.4,150,0.45"]
         (HEAD, ROWS, "--fit rughness.h_rms", "did you mean roughness"),
         (HEAD, ROWS, "--fit voltage", "fit has voltage; it must be a number of the finger"),
         (HEAD, ROWS, "--fit slices.tilt", "slices.tilt, and it is 0 in the scene; give it a start above 0"),
-        (HEAD, ROWS, "--fit friction --hold-out participant=7", "hold_out is participant '7', which no row of"),
+        (HEAD, ROWS, "--fit friction --hold-out participant=7", "hold_out has participant '7', which no row of"),
         (HEAD, ROWS, "--fit friction --hold-out 7", "--hold-out is 7; write it as"),
         (HEAD + ",spread (%)", [f"{ROWS[0]},3", f"{ROWS[1]},"], "--fit friction", "no spread above 0 in line 3"),
     ],

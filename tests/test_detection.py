@@ -6,9 +6,8 @@ from numpy.testing import assert_allclose
 
 import fingerpad as fp
 from fingerpad.cli import main
-from fingerpad.reduced import cylinders
-from fingerpad.runs import drive as detection
-from fingerpad.runs.drive import thresholds
+from fingerpad.reduced import cylinders, detection
+from fingerpad.reduced.detection import thresholds
 from variational.attraction.circuit import GapCircuit
 
 SINE = {"waveform": "sine", "amplitude": 200.0, "frequency": 30.0}

@@ -137,9 +137,9 @@ def test_lengths_between_known_forces_are_a_power_law():
     forces, known = OWN.forces, OWN.lengths["charged"]
     for k, between in enumerate(np.sqrt(np.array(forces[1:]) * np.array(forces[:-1]))):
         lengths = known[k : k + 2]
-        assert OWN.interpolate(between, known) == pytest.approx(np.sqrt(np.prod(lengths)))
+        assert OWN.length(between, "charged") == pytest.approx(np.sqrt(np.prod(lengths)))
     ratio = known[1] / known[0]
-    below = OWN.interpolate(forces[0] ** 2 / forces[1], known)
+    below = OWN.length(forces[0] ** 2 / forces[1], "charged")
     assert below == pytest.approx(known[0] / ratio)
 
 

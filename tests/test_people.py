@@ -8,7 +8,6 @@ from scipy import stats
 
 import fingerpad as fp
 from fingerpad.reduced import people_band, press
-from fingerpad.reduced.closed_form import closed_form
 from fingerpad.reduced.closure_band import closures, friction
 from fingerpad.reduced.cylinders import over_forces
 from fingerpad.reduced.people_band import Fingers, with_people
@@ -90,35 +89,30 @@ def test_one_spread_has_its_own_quantiles(result, monkeypatch):
     assert [found["low"], found["high"]] == pytest.approx(0.25 * quantiles(name, [0.05, 0.95]), rel=2e-3)
 
 
-def of_person(known, size, stiffness):
-    """Return the press of a finger with lengths and moduli times those of another: as a dimensional analysis has it."""
-
-    def times(factor, by_state):
-        return {state: tuple(factor * each for each in values) for state, values in by_state.items()}
-
-    forces = tuple(size * stiffness * each for each in known.forces)
-    return replace(
-        known, forces=forces, lengths=times(size, known.lengths), indentations=times(size, known.indentations),
-        roll=size * stiffness * known.roll,
-    )  # fmt: skip
-
-
 @pytest.mark.parametrize(
     "keys",
     [{}, {"friction": fp.Derjaguin(mu_f=0.1, tau_0=6e3)}, {"finger": "fitted"}],
     ids=["Coulomb", "shear stress", "flat tips"],
 )
 def test_people_of_a_range_are_the_closed_form_s(keys):
-    """The same people one by one as scenes of the closed form with their presses, to roundoff of its roots."""
+    """The same people one by one as scenes, whose presses are those of similar fingers, to roundoff of its roots."""
     scene = fp.Scene(voltage=150.0, **keys)
     (slip,), parts = over_forces(scene, [75.0], "full_slip"), np.random.default_rng(1).random((12, len(SPREADS)))
-    factors = {name: spread.factor(column) for (name, spread), column in zip(SPREADS.items(), parts.T, strict=True)}
-    laws = [scene.closure()] * 12, [scene.friction_law()] * 12
-    found = Fingers(scene, slip, None, False, factors, *laws).mu_app()
+    factors = {
+        name: spread.factor(column).round(6) for (name, spread), column in zip(SPREADS.items(), parts.T, strict=True)
+    }
+    found = Fingers(scene, slip, None, False, factors).mu_app()
     for k, mu_app in enumerate(found):
         one = with_factors(scene, {name: each[k] for name, each in factors.items()})
-        pressed = of_person(press.of(scene), factors["size"][k], factors["stiffness"][k])
-        assert mu_app == pytest.approx(over_forces(one, [75.0], "full_slip", pressed)[0].mu_app, rel=1e-9)
+        assert mu_app == pytest.approx(over_forces(one, [75.0], "full_slip")[0].mu_app, rel=1e-9)
+
+
+def test_person_has_a_press_and_another_finger_has_none():
+    """With one length or one layer changed alone it is no similar finger."""
+    (person,) = fp.people(1, 0, finger="child")
+    assert press.known(person).lengths["charged"][0] != press.known(fp.Scene(finger="child")).lengths["charged"][0]
+    for changes in ({"geometry": {"ridge_wavelength": 2e-3}}, {"materials": {"subcutis": {"shear_modulus": 1e3}}}):
+        assert press.known(person.replace(**changes)) is None
 
 
 def test_a_force_in_newtons_is_the_same_for_all():
@@ -128,24 +122,22 @@ def test_a_force_in_newtons_is_the_same_for_all():
     """
     scene, factors = fp.Scene(force="0.5 N", voltage=200.0), {"size": 1.2, "stiffness": 1.2}
     one = with_factors(scene, factors)
-    whole = [
-        closed_form(each, known).finger(0.5).mu_app
-        for each, known in ((one, of_person(press.of(scene), 1.2, 1.2)), (scene, None))
-    ]
-    (slip,), laws = over_forces(scene, [75.0], "full_slip"), ([scene.closure()] * 2, [scene.friction_law()] * 2)
+    whole = [fp.run(each, model="cylinders").finger.full_slip.mu_app for each in (one, scene)]
+    (slip,) = over_forces(scene, [75.0], "full_slip")
     both = {name: np.array([factor, 1.0]) for name, factor in factors.items()}
-    here, there = Fingers(scene, slip, None, True, both, *laws).mu_app()
+    here, there = Fingers(scene, slip, None, True, both).mu_app()
     assert here / there == pytest.approx(whole[0] / whole[1], rel=3e-3)
 
 
-def test_other_closures_among_people_have_their_numbers(result):
-    """Fingers of all closures together, with the numbers and the missing ones that each has alone."""
-    slip = replace(result.full_slip, voltage=200.0)
+def test_people_of_other_closures_have_their_numbers(result):
+    """With the numbers and the missing ones that each closure has."""
+    slip, one = replace(result.full_slip, voltage=200.0), {"size": np.ones(2)}
     laws = [*closures(result.scene.closure()).values()]
-    one = np.ones(len(laws))
-    fingers = Fingers(result.scene, slip, None, False, {"size": one}, laws, [result.scene.friction_law()] * len(laws))
     expected = [friction(result.scene, slip, law, None).mu_app for law in laws]
-    assert np.isinf(expected).any() and fingers.mu_app() == pytest.approx(expected, rel=1e-9)
+    for law, mu_app in zip(laws, expected, strict=True):
+        fingers = Fingers(result.scene.replace(roughness=law), slip, None, False, one)
+        assert fingers.mu_app() == pytest.approx([mu_app] * 2, rel=1e-9)
+    assert np.isinf(expected).any()
 
 
 def test_text_report_and_files_have_the_range(result):

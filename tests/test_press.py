@@ -9,7 +9,6 @@ from scipy.integrate import quad
 import fingerpad as fp
 from benchmarks.presses import REDUCED, regions
 from fingerpad.reduced import press
-from fingerpad.reduced.closed_form import closed_form
 from fingerpad.reduced.cylinder_errors import find
 from fingerpad.reduced.cylinders import over_forces
 from fingerpad.reduced.press import Press
@@ -82,13 +81,14 @@ def test_press_is_made_once_and_kept(cache, capsys):
     """For every friction, voltage and roughness, and by the model; another finger has another press."""
     scene = fp.Scene(geometry=FLAT, f_ext=50.0)
     with pytest.raises(fp.SceneError, match="^the finger of this scene has no press yet, .*; fp.press.scene. makes it"):
-        closed_form(scene)
+        over_forces(scene, [50.0], "full_slip")
     first = fp.run(scene, model="cylinders", voltage=100.0)
     assert "one press of this finger is made" in capsys.readouterr().err and press.file_of(scene).exists()
     press._found.cache_clear()
     other = scene.replace(friction=0.4, roughness={"h_rms": 4e-6}, electric={"d_i": 2e-6})
     assert press.known(other) == OWN == fp.press(other) and len(cache) == 1
-    assert fp.closed_form(scene).section(50.0, 100.0).mu_app == pytest.approx(first.full_slip.mu_app, rel=1e-12)
+    (again,) = over_forces(scene.replace(voltage=100.0), [50.0], "full_slip")
+    assert again.mu_app == pytest.approx(first.full_slip.mu_app, rel=1e-12)
     assert press.name(scene.replace(materials={"subcutis": {"shear_modulus": 5e3}})) != press.name(scene)
 
 
@@ -110,18 +110,6 @@ def test_friction_rolls_ridges_off():
     left = 1 - found.f_t**2 / (50.0 * press.ROLL)
     stiffer = 0.95  # of ridges by their shear, at least
     assert stiffer * left < found.contact_length / OWN.length(50.0, "charged") < left < 0.95
-
-
-def test_closed_form_has_the_numbers_of_the_model():
-    """Of the section to roundoff; of the whole finger as well as points of another trace have it, 0.1 %."""
-    form = fp.closed_form()
-    section, whole = (fp.run(voltage=150.0, model="cylinders", **load) for load in ({"f_ext": 60.0}, {"force": 0.5}))
-    found, known = form.section(60.0, 150.0), section.full_slip
-    assert (found.mu_app, found.contact) == pytest.approx((known.mu_app, known.contact_length), rel=1e-12)
-    found, known = form.finger(0.5, 150.0), whole.finger.values("full_slip")
-    for name, value in {"mu_app": "mu_app", "contact": "contact_area", "indentation": "indentation"}.items():
-        assert getattr(found, name) == pytest.approx(known[value], rel=1e-3), name
-    assert found.share == pytest.approx(found.contact / found.gross)
 
 
 @pytest.mark.parametrize("name", FINGERS)

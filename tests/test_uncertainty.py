@@ -21,7 +21,7 @@ def salib():
 
 @pytest.fixture(scope="module")
 def study():
-    return Study.of(fp.run(fp.Scene(voltage=100.0), model="cylinders"))
+    return Study(fp.run(fp.Scene(voltage=100.0), model="cylinders"))
 
 
 def by_name(rows, key):
@@ -75,7 +75,7 @@ def test_middle_and_changes_are_the_closed_form_s(study):
 
 
 def test_closures_without_a_number_are_left_out():
-    study = Study.of(fp.run(fp.Scene(voltage=200.0), model="cylinders"))
+    study = Study(fp.run(fp.Scene(voltage=200.0), model="cylinders"))
     assert study.missing == {name: "ridges adhere at 200 V" for name in ("boundary elements", "Persson's theory")}
     assert not set(study.missing) & set(study.closures) and any("Left out" in words for words in study.words())
 
@@ -96,7 +96,7 @@ def test_command(salib, tmp_path, capsys, monkeypatch):
 def test_refusals(monkeypatch, capsys):
     """Without friction nothing spreads; a missing SALib is a sentence with the way to get it."""
     with pytest.raises(fp.SceneError, match="no friction at full slip"):
-        Study.of(fp.run(fp.Scene(friction=0.0), model="cylinders"))
+        Study(fp.run(fp.Scene(friction=0.0), model="cylinders"))
     monkeypatch.setitem(sys.modules, "SALib.analyze.sobol", None)
     assert cli.main(["uncertainty"]) == 2
     assert "needs SALib" in capsys.readouterr().err and uncertainty.POINTS == 256

@@ -14,7 +14,7 @@ from benchmarks.measured import rules
 from benchmarks.measured.findings import Finding
 from benchmarks.measured.fingers import VOLTAGES, Case, Computation, Finger, Row
 from benchmarks.measured.rules import SIMILAR, STRIKING, by_factor, by_share
-from fingerpad.runs.drive import of_wave
+from fingerpad.reduced.detection import of_wave
 from fingerpad.scene import Scene
 from fingerpad.scene.drive import REFERENCE
 from variational.attraction.circuit import GapCircuit, fit_leak

@@ -32,12 +32,9 @@ def main(argv: Sequence[str]) -> int:
     parser.add_argument("--no-full", action="store_true", help="no full runs at three conditions of the table")
     parser.add_argument("--jobs", type=positive, default=2, metavar="N", help="full runs at a time (default: 2)")
     args = parser.read(argv)
-    held = dict[str, str]()
-    for text in args.hold_out:
-        name, equals, value = (part.strip() for part in text.partition("="))
-        if not (name and equals and value):
-            raise SceneError(f"--hold-out is {clip(text) or 'an empty text'}; write it as --hold-out participant=7")
-        held[name] = value
+    held = {name.strip(): value.strip() for name, _, value in (text.partition("=") for text in args.hold_out)}
+    if not all(held.values()):
+        raise SceneError(f"--hold-out is {clip(' '.join(args.hold_out))}; write it as --hold-out participant=7")
     from fingerpad.measurements.calibrate import calibrate  # pandas
 
     try:

@@ -9,8 +9,9 @@ from typing import Any
 from fingerpad.cli import output
 from fingerpad.cli.arguments import PICTURE, Parser, changes, echo, quantities, refuse_twice, scene_of
 from fingerpad.model.cautions import examine
+from fingerpad.reduced.detection import FREQUENCIES, REFERENCE_FREQUENCY, thresholds
 from fingerpad.results.quantities import Output
-from fingerpad.runs.drive import FREQUENCIES, REFERENCE_FREQUENCY, drive, thresholds
+from fingerpad.runs.drive import drive
 from fingerpad.scene import Scene, load
 from fingerpad.scene.messages import SceneError, clip
 from fingerpad.scene.remarks import circuit_in_words

@@ -13,9 +13,9 @@ that with all that it has in common with others. I. M. Sobol' 2001, Math. Comput
 et al. 2010, doi 10.1016/j.cpc.2009.09.018, by SALib (Herman and Usher 2017, doi 10.21105/joss.00097, MIT licence).
 """
 
+import itertools
 import time
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -32,8 +32,6 @@ from fingerpad.results.result import Result
 from fingerpad.runs.solve import run
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.people import SPREADS
-from variational.contact.friction import Friction
-from variational.roughness.closure import Closure
 
 Array = NDArray[np.float64]
 _EXAMPLES = """
@@ -56,9 +54,8 @@ def main(argv: Sequence[str]) -> int:
     parser.add_scene()
     output.add_files(parser, _COLUMNS, "picture of the total indices")
     args = parser.read(argv)
-    _salib()
     begin, result = time.perf_counter(), run(scene_of(args, meshed=False), model="cylinders")
-    study, head = Study.of(result), result.headline
+    study, head = Study(result), result.headline
     rows = indices(study, [_PEOPLE if name in SPREADS else name for name in study.names])
     place = next(k for k, row in enumerate(rows) if row["factor"] == _PEOPLE) + 1
     each = [row for row in indices(study, study.names) if row["factor"] in SPREADS]
@@ -71,48 +68,31 @@ def main(argv: Sequence[str]) -> int:
     return 0
 
 
-@dataclass
 class Study:
-    """The fingers about a result, as a function of numbers from 0 to 1."""
+    """The fingers about a result of the closed form, as a function of numbers from 0 to 1: ``names`` of factors."""
 
-    result: Result
-    closures: Mapping[str, Closure]
-    """Models of roughness by words, each as likely."""
-    missing: Mapping[str, str]
-    """Reasons of those that have no number."""
-    laws: Sequence[Friction]
-    """Laws of friction, each as likely."""
-    names: Sequence[str]
-    """Factors, in the order of the numbers."""
-    count: int = field(default=0, init=False)
-    """Fingers that were computed."""
-    lost: int = field(default=0, init=False)
-    """Those of them without a number."""
-
-    @classmethod
-    def of(cls, result: Result) -> "Study":
-        """Return the study of a result of the closed form.
+    def __init__(self, result: Result) -> None:
+        """Find the models of roughness and the laws of friction that have a number.
 
         Raises:
-            SceneError: it has no friction at full slip, or its own closure has no number.
+            SceneError: the result has no friction at full slip, or its own closure has no number.
         """
         scene, slip, law = result.scene, result.full_slip, result.scene.friction_law()
         if slip is None or law is None or not slip.mu_app > 0:
             raise SceneError("the scene has no friction at full slip; give a friction and a load that slides")
-        own = scene.closure()
+        own, self.result, self.laws = scene.closure(), result, [law]
         if why := friction(scene, slip, own, None).why:
             raise SceneError(f"friction at full slip is not known: by the scene's own roughness {why}")
-        laws = [law]
         for each, *_ in changes(scene, slip, None)[LAW]:
             other: Any = each.friction_law()
-            if not any(np.allclose(other.limit(_PRESSURES), one.limit(_PRESSURES), rtol=1e-3) for one in laws):
-                laws.append(other)
+            if not any(np.allclose(other.limit(_PRESSURES), one.limit(_PRESSURES), rtol=1e-3) for one in self.laws):
+                self.laws.append(other)
         models = closures(own) or {"its own model": own}
-        missing = {words: why for words, model in models.items() if (why := friction(scene, slip, model, None).why)}
-        models = {words: model for words, model in models.items() if words not in missing}
+        self.missing = {name: why for name, law in models.items() if (why := friction(scene, slip, law, None).why)}
+        self.closures = {name: law for name, law in models.items() if name not in self.missing}
         known = [_SOLUTION] if np.isfinite(result.headline.error) else []
-        names = [*entering(own), *([_MODELS, _COATED] if own.shared else []), LAW, *known]
-        return cls(result, models, missing, laws, names)
+        self.names = [*entering(own), *([_MODELS, _COATED] if own.shared else []), LAW, *known]
+        self.count = self.lost = 0  # fingers that were computed, and those of them without a number
 
     def __call__(self, points: Array) -> Array:
         """Return ln µ_app at points, shape (points, factors); that of the largest number where a finger has none."""
@@ -120,12 +100,17 @@ class Study:
         factors = {name: SPREADS[name].factor(part[name]) for name in self.names if name in SPREADS}
         if _COATED in part:
             factors[_COATED] = np.interp(part[_COATED], [0, 1], _COATING)
-        models, laws = [*self.closures.values()], [*self.laws]
-        chosen = ((part.get(name, 0 * points[:, 0]), of) for name, of in ((_MODELS, models), (LAW, laws)))
-        levels: Any = [[of[k] for k in np.minimum(len(of) * at, len(of) - 1).astype(int)] for at, of in chosen]
-        result, head = self.result, self.result.headline
-        slip: Any = result.full_slip
-        mu_app = Fingers(result.scene, slip, None, head.of == WHOLE, factors, *levels).mu_app()
+        result, head, mu_app = self.result, self.result.headline, np.empty(len(points))
+        chosen = (
+            np.minimum(len(of) * part.get(name, 0 * mu_app), len(of) - 1).astype(int)
+            for name, of in ((_MODELS, self.closures), (LAW, self.laws))
+        )
+        group = np.ravel_multi_index(tuple(chosen), (len(self.closures), len(self.laws)))
+        for k, (model, law) in enumerate(itertools.product(self.closures.values(), self.laws)):
+            scene = result.scene.model_copy(update={"roughness": model, "friction": law})
+            own: Any = (scene, result.full_slip, None, head.of == WHOLE)
+            if (mine := group == k).any():
+                mu_app[mine] = Fingers(*own, {name: each[mine] for name, each in factors.items()}).mu_app()
         self.count, self.lost = self.count + len(mu_app), self.lost + int(np.isinf(mu_app).sum())
         mu_app = np.minimum(mu_app, mu_app[np.isfinite(mu_app)].max())
         share = head.error / head.value if _SOLUTION in part else 0.0
@@ -155,7 +140,14 @@ def indices(model: Callable[[Array], Array], groups: Sequence[str], points: int 
     Raises:
         SceneError: SALib is not installed, or all values are the same.
     """
-    sample, analyze = _salib()
+    try:
+        from SALib.analyze.sobol import analyze
+        from SALib.sample.sobol import sample
+    except ImportError:
+        raise SceneError(
+            "fingerpad uncertainty needs SALib, which is not installed; get it with: pip install "
+            "'fingerpad[uncertainty]', or in a clone environment/wheels"
+        ) from None
     names = [f"x{k}" for k in range(len(groups))]
     problem = {"num_vars": len(names), "names": names, "bounds": [[0.0, 1.0]] * len(names), "groups": [*groups]}
     values = model(sample(problem, points, calc_second_order=False, seed=_SEED))
@@ -165,19 +157,6 @@ def indices(model: Callable[[Array], Array], groups: Sequence[str], points: int 
     columns = zip(dict.fromkeys(groups), *(found[key] for key in ("S1", "S1_conf", "ST", "ST_conf")), strict=True)
     rows = [{each.name: value for each, value in zip(_COLUMNS, row, strict=True)} for row in columns]
     return sorted(rows, key=lambda row: -row["total"])
-
-
-def _salib() -> tuple[Callable[..., Any], Callable[..., Any]]:
-    """Return SALib's sampling and analysis by Sobol's sequence."""
-    try:
-        from SALib.analyze.sobol import analyze
-        from SALib.sample.sobol import sample
-    except ImportError:
-        raise SceneError(
-            "fingerpad uncertainty needs SALib, which is not installed; get it with: pip install "
-            "'fingerpad[uncertainty]', or in a clone environment/wheels"
-        ) from None
-    return sample, analyze
 
 
 def _draw(file: Path, rows: Sequence[dict[str, Any]]) -> None:

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from fingerpad.measurements import prediction
 from fingerpad.measurements.estimation import Data, Estimate, estimate, slopes
-from fingerpad.measurements.prediction import ClosedForm
+from fingerpad.measurements.prediction import ClosedForm, Powers
 from fingerpad.measurements.table import Observations, observations
 from fingerpad.reduced.closure_band import closures, laws_like
 from fingerpad.reduced.cylinders import over_forces
@@ -51,15 +51,12 @@ class Calibration:
     scene: Scene
     """With the fitted values."""
     values: pd.DataFrame
-    """Of each key ``value``, ``low`` and ``high``, the ends of its 95 % region, and ``spread``, the relative standard
-    deviation between participants (0 where none is estimated)."""
+    """Of each key ``value``, ``low`` and ``high``, the ends of its 95 % region, and ``spread`` between participants."""
     correlation: pd.DataFrame
     """Of the logarithms of the keys."""
-    people: pd.DataFrame
-    """Expected values of each participant; without rows where no spread between them is estimated."""
     rows: pd.DataFrame
-    """Of the table: ``participant``, conditions, ``quantity``, ``measured``, ``fitted``, the ends ``low`` and ``high``
-    of the 95 % band of a measured value, ``deviation`` in standard deviations of the row, and ``held_out``."""
+    """Of :func:`fingerpad.measurements.table.observations`, with ``fitted``, the 95 % band ``low`` to ``high`` of a
+    measured value, ``deviation`` in standard deviations of the row, and ``held_out``."""
     noise: float
     """Relative standard deviation of rows that is estimated; NaN where it is given."""
     ties: tuple[str, ...]
@@ -134,65 +131,55 @@ def _held(seen: Observations, hold_out: Mapping[str, Any]) -> NDArray[np.bool_]:
             held &= seen.rows[key] == str(value) if key == "participant" else np.isclose(seen.rows[key], float(value))
         except (TypeError, ValueError):
             raise SceneError(f"hold_out has {key} {show(value)}; it must be a number") from None
-    if hold_out and not held.any():
-        words = ", ".join(f"{key} {show(value)}" for key, value in hold_out.items())
-        raise SceneError(f"hold_out is {words}, which no row of {seen.name} has")
+        if not held.any():
+            raise SceneError(f"hold_out has {key} {show(value)}, which no row of {seen.name} has")
     return held
 
 
-@dataclass
 class _Problem:
     """A table, keys of a scene and rows that are held out."""
 
-    scene: Scene
-    keys: tuple[str, ...]
-    seen: Observations
-    held: NDArray[np.bool_]
-    spread: float | None
-
-    def __post_init__(self) -> None:
+    def __init__(
+        self, scene: Scene, keys: tuple[str, ...], seen: Observations, held: NDArray[np.bool_], spread: float | None
+    ) -> None:
         """Refuse what cannot be fitted whatever the values."""
-        self.rows, self.fitted, name = self.seen.rows, self.seen.rows[~self.held], self.seen.name
+        self.scene, self.keys, self.seen, self.held = scene, keys, seen, held
+        self.rows, self.fitted, name = seen.rows, seen.rows[~held], seen.name
         self.names = list(dict.fromkeys(self.fitted.participant))
-        if not self.keys:
+        if not keys:
             raise SceneError("fit has no key; give keys of the scene, as friction and roughness.h_rms")
-        if len(self.fitted) < len(self.keys):
+        if len(self.fitted) < len(keys):
             rows = counted(len(self.fitted), "value")
-            raise SceneError(f"{name} has {rows} to fit and fit has {len(self.keys)} keys; give at most as many keys")
-        if self.spread is not None and not (isinstance(self.spread, int | float) and 0 < self.spread < math.inf):
-            raise SceneError(f"spread is {show(self.spread)}; it must be a relative standard deviation above 0")
-        volts, charged = (
-            self.fitted.voltage.unique(),
-            [k for k in self.keys if k.startswith(("electric.", "roughness."))],
-        )
+            raise SceneError(f"{name} has {rows} to fit and fit has {len(keys)} keys; give at most as many keys")
+        if spread is not None and not (isinstance(spread, int | float) and 0 < spread < math.inf):
+            raise SceneError(f"spread is {show(spread)}; it must be a relative standard deviation above 0")
+        volts, charged = self.fitted.voltage.unique(), [k for k in keys if k.startswith(("electric.", "roughness."))]
         if len(volts) == 1 and charged and not self.fitted.quantity.isin(["air gap", "threshold ratio"]).any():
             at = "the scene's voltage" if math.isnan(volts[0]) else f"{volts[0]:g} V"
             raise SceneError(
                 f"all values of {name} are at {at}, and {charged[0]} acts by the voltage; give rows at another one"
             )
-        spreads = self.rows.spread.fillna(self.spread or math.nan)
+        spreads = self.rows.spread.fillna(spread or math.nan)
         self.known = bool(spreads.notna().any())
         self.spreads = (spreads if self.known else spreads.fillna(1.0)).to_numpy()
         if not (self.spreads > 0).all():
             line = self.rows.line[~(self.spreads > 0)].iloc[0]
             raise SceneError(f"{name} has no spread above 0 in line {line}; give one, or spread for all such rows")
 
-    def fit(
-        self, scene: Scene, keys: Sequence[str], exponents: Mapping[str, Array] | None = None
-    ) -> tuple[ClosedForm, Estimate]:
-        """Return the closed form over keys of a scene, and their estimate from its values.
+    def fit(self, scene: Scene, keys: Sequence[str], known: Powers | None = None) -> tuple[ClosedForm, Estimate]:
+        """Return the closed form over keys of a scene, and their estimate from its values; ``known`` is its argument.
 
-        The prior is about the values that keys have at first. Other arguments are those of :class:`.ClosedForm`.
+        The prior is about the values that keys have at first.
 
         Raises:
             SceneError: a key cannot be fitted, or the closed form has no answer at the scene.
         """
         start = np.log([_value_of(scene, key) for key in keys])
         centre = np.log([_value_of(self.scene if key in self.keys else scene, key) for key in keys])
-        ends = np.log([(limits.low, limits.high) for limits in (_key(key).limits for key in keys)]).T
-        form = ClosedForm(scene, keys, self.rows, self.seen.state, exponents)
+        low, high = np.log([(_key(key).limits.low, _key(key).limits.high) for key in keys]).T
+        form = ClosedForm(scene, keys, self.rows, self.seen.state, known)
         form.rows(scene)  # refuses what has no answer
-        bounds = np.maximum(ends[0], centre - _REACH), np.minimum(ends[1], centre + _REACH)
+        bounds = np.maximum(low, centre - _REACH), np.minimum(high, centre + _REACH)
         people = [np.flatnonzero(self.fitted.participant == name) for name in self.names]
         y = np.log(self.fitted.measured.to_numpy())
         data = Data(y, self.spreads[~self.held], self.known, people, centre, PRIOR, bounds)
@@ -215,11 +202,10 @@ class _Problem:
         ends = {"value": best.theta, "low": best.theta - wide, "high": best.theta + wide}
         values = pd.DataFrame({name: np.exp(each) for name, each in ends.items()}, keys).assign(spread=best.omega)
         correlation = pd.DataFrame(best.covariance / np.outer(error, error), keys, keys)
-        people = [np.exp(best.theta + shift) for shift, _ in best.shifts] if best.omega.any() else []
         scene = form.at(best.theta)
         tried = self._evidence(scene, best, form.exponents) if evidence else pd.DataFrame(columns=_EVIDENCE)
         return Calibration(
-            scene, values, correlation, pd.DataFrame(people, self.names[: len(people)], keys), self._rows(form, best),
+            scene, values, correlation, self._rows(form, best),
             math.nan if self.known else best.sigma, tuple(self._ties(best)), tried, self.seen.state,
         )  # fmt: skip
 
@@ -245,17 +231,17 @@ class _Problem:
                 yield f"The table cannot tell apart {' and '.join(key for key, _ in named)}: {product} is {far}."
 
     # -- evidence ----------------------------------------------------------------------------------------------
-    def _evidence(self, scene: Scene, best: Estimate, exponents: Mapping[str, Array]) -> pd.DataFrame:
+    def _evidence(self, scene: Scene, best: Estimate, known: Powers) -> pd.DataFrame:
         """Return how well each closure and each friction law describes the rows, with its keys fitted."""
         found = []
         for kind, name, other, keys in (*self._closures(scene), *self._friction_laws(scene)):
-            row: dict[str, Any] = {"kind": kind, "name": name, "AICc": math.nan}
             try:
-                fitted = best if other == scene and keys == self.keys else self.fit(other, keys, exponents)[1]
-                row |= {"AICc": fitted.criterion, "values": ", ".join(map(shown, keys, np.exp(fitted.theta)))}
+                fitted = best if other == scene and keys == self.keys else self.fit(other, keys, known)[1]
+                values = zip(keys, np.exp(fitted.theta), strict=True)
+                words = ", ".join(f"{key} {value:.4g} {_key(key).unit}".rstrip() for key, value in values)
+                found.append((kind, name, fitted.criterion, words))
             except SceneError as error:
-                row["values"] = f"not fitted: {error}"
-            found.append(row)
+                found.append((kind, name, math.nan, f"not fitted: {error}"))
         rows = pd.DataFrame(found, columns=_EVIDENCE)
         difference = rows.AICc - rows.groupby("kind").AICc.transform("min")
         weight = np.exp(-difference / 2)
@@ -299,11 +285,6 @@ def _value_of(scene: Scene, name: str) -> float:
     if not (isinstance(value, int | float) and value > 0):
         raise SceneError(f"fit has {name}, and it is {show(value)} in the scene; give it a start above 0 there")
     return float(value)
-
-
-def shown(name: str, value: float) -> str:
-    """Return a key with a value and its unit."""
-    return f"{name} {value:.4g} {_key(name).unit}".rstrip()
 
 
 # -- full runs -------------------------------------------------------------------------------------------------

@@ -17,7 +17,7 @@ of the whole likelihood, K parameters and variances, and n rows (Hurvich and Tsa
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -38,20 +38,22 @@ _LEVEL = 0.95
 
 @dataclass(frozen=True, eq=False)
 class Data:
-    """Rows, and what is known of parameters beforehand; logarithms."""
+    """Rows, and what is known of parameters beforehand; logarithms.
+
+    Args:
+        y: shape (rows,).
+        spread: standard deviation of each row; all 1 where they are not ``known`` and their one scale is estimated.
+        people: rows of each person; those of all where there are none.
+        centre: mean of the prior, shape (parameters,), whose standard deviation is ``width``.
+        bounds: of the parameters.
+    """
 
     y: Array
-    """Shape (rows,)."""
     spread: Array
-    """Standard deviation of each row; all 1 where ``known`` is false."""
     known: bool
-    """Whether the spreads are given; else their one scale is estimated."""
     people: Sequence[NDArray[np.intp]]
-    """Rows of each person; those of all where there are none."""
     centre: Array
-    """Mean of the prior, shape (parameters,)."""
     width: float
-    """Its standard deviation."""
     bounds: tuple[Array, Array]
 
 
@@ -68,19 +70,17 @@ class Estimate:
     sigma: float
     """Factor on the spreads of rows."""
 
-    # -- one person's rows -----------------------------------------------------------------------------
-    def _factors(self, omega: Array, sigma: float) -> list[Array]:
-        """Return the Cholesky factor of V of each person."""
-        found = []
+    def _of_people(self, omega: Array, sigma: float) -> Iterator[tuple[NDArray[np.intp], Array, Array]]:
+        """Yield of each person rows, the Cholesky factor of V, and Jacobian and residual side by side."""
         for rows in self.data.people:
-            j = self.jacobian[rows] * omega
-            found.append(np.linalg.cholesky(j @ j.T + np.diag((sigma * self.data.spread[rows]) ** 2)))
-        return found
+            j = self.jacobian[rows]
+            v = j * omega @ (j * omega).T + np.diag((sigma * self.data.spread[rows]) ** 2)
+            yield rows, np.linalg.cholesky(v), np.column_stack([j, (self.data.y - self.fitted)[rows]])
 
     def white(self, values: Array) -> Array:
         """Return values of the rows, shape (rows, …), whitened: with the variance 1, person by person."""
         out = np.empty_like(values)
-        for rows, factor in zip(self.data.people, self._factors(self.omega, self.sigma), strict=True):
+        for rows, factor, _ in self._of_people(self.omega, self.sigma):
             out[rows] = scipy.linalg.solve_triangular(factor, values[rows], lower=True)
         return out
 
@@ -88,8 +88,7 @@ class Estimate:
         """Return -2 ln L of these variances at the best linear parameters; restricted, or of the whole likelihood."""
         pull = (self.data.centre - self.theta) / self.data.width**2
         m, g, total = np.eye(len(pull)) / self.data.width**2, pull.copy(), float(pull @ pull) * self.data.width**2
-        for rows, factor in zip(self.data.people, self._factors(omega, sigma), strict=True):
-            both = np.column_stack([self.jacobian[rows], (self.data.y - self.fitted)[rows]])
+        for rows, factor, both in self._of_people(omega, sigma):
             j, r = np.hsplit(scipy.linalg.solve_triangular(factor, both, lower=True), [-1])
             m, g, total = m + j.T @ j, g + j.T @ r[:, 0], total + float((r**2).sum())
             total += 2 * float(np.log(np.diag(factor)).sum()) + len(rows) * math.log(2 * math.pi)
@@ -111,7 +110,6 @@ class Estimate:
         )
         return (*split(best.x), float(best.fun))
 
-    # -- results -----------------------------------------------------------------------------------------
     @property
     def freedom(self) -> float:
         """Degrees of freedom of Student's t: people less one, else rows less parameters; none of known spreads."""
@@ -141,8 +139,7 @@ class Estimate:
     def shifts(self) -> list[tuple[Array, Array]]:
         """Of each person the expected difference b from the common parameters, and the covariance of their sum."""
         found = []
-        for rows, factor in zip(self.data.people, self._factors(self.omega, self.sigma), strict=True):
-            both = np.column_stack([self.jacobian[rows], (self.data.y - self.fitted)[rows]])
+        for rows, factor, both in self._of_people(self.omega, self.sigma):
             own = np.diag(self.omega**2) @ self.jacobian[rows].T @ scipy.linalg.cho_solve((factor, True), both)
             left = np.eye(len(self.theta)) - own[:, :-1]
             found.append((own[:, -1], left @ self.covariance @ left.T + left @ np.diag(self.omega**2)))
@@ -178,14 +175,12 @@ def slopes(model: Callable[[Array], Array], theta: Array, here: Array) -> Array:
         ValueError: the model has no value on either side.
     """
     columns = []
-    for k in range(len(theta)):
-        for step in (_STEP, -_STEP):
-            beside = model(theta + step * (np.arange(len(theta)) == k))
-            if np.isfinite(beside).all():
-                columns.append((beside - here) / step)
-                break
-        else:
-            raise ValueError(f"parameter {k} has no value on either side")
+    for unit in np.eye(len(theta)):
+        beside = ((step, model(theta + step * unit)) for step in (_STEP, -_STEP))
+        found = next(((values - here) / step for step, values in beside if np.isfinite(values).all()), None)
+        if found is None:
+            raise ValueError(f"parameter {len(columns)} has no value on either side")
+        columns.append(found)
     return np.column_stack(columns)
 
 
@@ -203,14 +198,11 @@ def estimate(model: Callable[[Array], Array], start: Array, data: Data) -> Estim
     many, values, jacobians = len(data.people) >= FEW, dict[bytes, Array](), dict[bytes, Array]()
 
     def at(x: Array) -> Array:
-        if x.tobytes() not in values:
-            values[x.tobytes()] = model(x)
-        return values[x.tobytes()]
+        return values[x.tobytes()] if x.tobytes() in values else values.setdefault(x.tobytes(), model(x))
 
     def slope(x: Array) -> Array:
-        if x.tobytes() not in jacobians:
-            jacobians[x.tobytes()] = slopes(model, x, at(x))
-        return jacobians[x.tobytes()]
+        key = x.tobytes()
+        return jacobians[key] if key in jacobians else jacobians.setdefault(key, slopes(model, x, at(x)))
 
     scale = 1.0 if data.known else _FIRST
     found = Estimate(data, start, at(start), slope(start), np.full_like(start, _FIRST * many), scale)

@@ -11,47 +11,36 @@ of them about the scene's own values :math:`k_0`, with exponents from two presse
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from fingerpad.reduced import press
-from fingerpad.reduced.cylinders import over_forces
-from fingerpad.runs.drive import thresholds
-from fingerpad.runs.solve import find
+from fingerpad.reduced import cylinders
+from fingerpad.reduced.detection import thresholds
 from fingerpad.scene import Scene, value_of, with_values
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.parameters import centre_force
 from fingerpad.slices.total import BeyondTrace, Total, at_force, at_indentation, profile
-from fingerpad.slices.trace import Trace, trace
-from fingerpad.slices.traces import MARGIN, grid
+from fingerpad.slices.trace import Trace
+from fingerpad.slices.traces import MARGIN
 
 Array = NDArray[np.float64]
+Powers = Mapping[str, Array]
+MODEL = cylinders.Cylinders()
 _CLOSE, _STEPS = 1e-9, 8  # of the logarithm of a force; steps of the secant method
 _MORE, _FURTHEST = 1.5, 10.0  # of the largest force of a trace that is too short: a factor, and the largest one
-SUMS = {"friction force": "f_t", "gross area": "gross_area", "contact area": "contact_area"}
+_PRESSED, _PART = ("geometry.", "materials.", "contact."), 0.25  # keys of a press, and part of a logarithm to a side
+_SUMS = {"friction force": "f_t", "gross area": "gross_area", "contact area": "contact_area"}
 _CONDITIONS = ["force", "voltage", "frequency", "state", "quantity"]
-
-
-MODEL = find("cylinders")
-PRESSED = ("geometry.", "materials.", "contact.")
-"""Tables of keys that change the press of a finger."""
-_PART = 0.25  # of the logarithm of such a key, to either side
 
 
 class ClosedForm:
     """Rows of a table as functions of keys of a scene."""
 
     def __init__(
-        self,
-        scene: Scene,
-        keys: Sequence[str],
-        rows: pd.DataFrame,
-        state: str,
-        exponents: Mapping[str, Array] | None = None,
+        self, scene: Scene, keys: Sequence[str], rows: pd.DataFrame, state: str, known: Powers | None = None
     ) -> None:
         """Take rows of :func:`fingerpad.measurements.table.observations`.
 
@@ -60,29 +49,23 @@ class ClosedForm:
             keys: dotted, of numbers greater than 0.
             rows: with force, voltage, frequency and quantity.
             state: of quantities other than friction.
-            exponents: of the rows by key of a press; by default from two presses each.
+            known: exponents of the rows by key of a press; by default they are from two presses each.
 
         Raises:
             SceneError: the finger has no closed form, or its press fails.
         """
         self.scene, self.keys = scene, keys
         MODEL.check(scene)  # has its finger pressed
-        self._press = press.of(scene)
         of = rows.assign(state=[state_of(quantity, state) for quantity in rows.quantity])[_CONDITIONS]
         self._different = of.drop_duplicates(ignore_index=True)
         self._row = of.groupby(_CONDITIONS, dropna=False, sort=False).ngroup().to_numpy()
-        self._depths, self._further = dict[Any, float](), 1.0
-        found = exponents or {}
-        pressed = [key for key in keys if key.startswith(PRESSED)]
-        self.exponents = {key: found[key] if key in found else self._exponent(key, rows, state) for key in pressed}
-
-    def _exponent(self, key: str, rows: pd.DataFrame, state: str) -> Array:
-        """Return the exponents of the rows over a key of the press."""
-        value, ends = value_of(self.scene, key), list[Array]()
-        for factor in (math.exp(_PART), math.exp(-_PART)):
-            other = with_values(self.scene, {key: value * factor})
-            ends.append(ClosedForm(other, (), rows, state).rows(other))
-        return np.asarray((ends[0] - ends[1]) / (2 * _PART))
+        self._depths, self._further, self.exponents = dict[Any, float](), 1.0, dict(known or {})
+        for key in (key for key in keys if key.startswith(_PRESSED) and key not in self.exponents):
+            value, ends = value_of(scene, key), list[Array]()
+            for factor in (math.exp(_PART), math.exp(-_PART)):
+                other = with_values(scene, {key: value * factor})
+                ends.append(ClosedForm(other, (), rows, state).rows(other))
+            self.exponents[key] = (ends[0] - ends[1]) / (2 * _PART)
 
     def at(self, values: Array) -> Scene:
         """Return the scene with values of the keys, given as logarithms."""
@@ -91,12 +74,12 @@ class ClosedForm:
     def __call__(self, values: Array) -> Array:
         """Return the logarithms of the rows at logarithms of the keys; NaN without an answer."""
         changes = dict(zip(self.keys, np.exp(values).tolist(), strict=True))
-        moved = {key: math.log(changes.pop(key) / value_of(self.scene, key)) for key in self.exponents}
+        powers = {key: by for key, by in self.exponents.items() if key in changes}
+        moved = sum(by * math.log(changes.pop(key) / value_of(self.scene, key)) for key, by in powers.items())
         try:
-            found = self.rows(with_values(self.scene, changes) if changes else self.scene)
+            return np.asarray(self.rows(with_values(self.scene, changes) if changes else self.scene) + moved)
         except SceneError:
             return np.full(len(self._row), np.nan)
-        return np.asarray(found + sum(self.exponents[key] * by for key, by in moved.items()))
 
     def rows(self, scene: Scene) -> Array:
         """Return the logarithms of the rows of a scene.
@@ -112,8 +95,7 @@ class ClosedForm:
                 if quantity == "threshold ratio":
                     found[k] = thresholds(driven, [frequency])[0].sine
                     continue
-                if not totals:
-                    totals = self._totals(driven, str(state), sorted(set(group.force), reverse=True))
+                totals = totals or self._totals(driven, str(state), sorted(set(group.force), reverse=True))
                 found[k] = value(driven, quantity, *totals[force])
         return np.asarray(np.log(found))[self._row]
 
@@ -121,41 +103,34 @@ class ClosedForm:
         """Return the finger under forces (N), the largest first, with the trace."""
         expected, largest = (centre_force(force, scene.geometry.width) for force in (forces[-1], forces[0]))
         while True:
-            trace, found = self._trace(scene, state, expected, self._further * MARGIN * largest), {}
+            top = self._further * MARGIN * largest
+            trace, found = MODEL.of_points(scene, cylinders.solve, state, expected, top).trace, {}
             try:
                 for force in forces:
                     place = (scene.volts, state, force)
-                    found[force] = (trace, self._near(scene, trace, force, self._depths.get(place)))
+                    found[force] = (trace, _under_force(scene, trace, force, self._depths.get(place)))
                     self._depths[place] = math.log(found[force][1].delta)
+                return found
             except BeyondTrace:
                 if self._further > _FURTHEST:
                     raise
                 self._further *= _MORE
-                continue
-            return found
 
-    def _trace(self, scene: Scene, state: str, expected: float, top: float) -> Trace:
-        kind, scene = ("charged", under(scene, 0.0, math.nan)) if state == "uncharged" else (state, scene)
-        f_ext = grid(expected, top)
-        found = zip(over_forces(scene, f_ext, kind, self._press), self._press.indentation(f_ext, kind), strict=True)
-        states = [replace(each, bone_height=-float(depth)) for each, depth in found]
-        return trace(states, scene.geometry.ridge_wavelength)
 
-    @staticmethod
-    def _near(scene: Scene, trace: Trace, force: float, x: float | None) -> Total:
-        """Return the finger under a force (N), by the secant method from the logarithm of a depth (m) nearby."""
-        finger, count, slope, before = profile(scene.slices), scene.slices.count, 2.0, (0.0, 0.0)
-        for step in range(_STEPS if x is not None else 0):
-            try:
-                total = at_indentation(finger, trace, math.exp(x), count)  # type: ignore[arg-type]
-            except BeyondTrace:
-                break
-            off = math.log(total.totals["f_ext"] / force)
-            if abs(off) < _CLOSE:
-                return total
-            slope = (off - before[1]) / (x - before[0]) if step else slope  # type: ignore[operator]
-            before, x = (x, off), x - off / slope  # type: ignore[assignment, operator]
-        return at_force(finger, trace, force, count)
+def _under_force(scene: Scene, trace: Trace, force: float, x: float | None) -> Total:
+    """Return the finger under a force (N), by the secant method from the logarithm of a depth (m) nearby."""
+    finger, count, slope, before = profile(scene.slices), scene.slices.count, 2.0, (0.0, 0.0)
+    for step in range(_STEPS if x is not None else 0):
+        try:
+            total = at_indentation(finger, trace, math.exp(x), count)  # type: ignore[arg-type]
+        except BeyondTrace:
+            break
+        off = math.log(total.totals["f_ext"] / force)
+        if abs(off) < _CLOSE:
+            return total
+        slope = (off - before[1]) / (x - before[0]) if step else slope  # type: ignore[operator]
+        before, x = (x, off), x - off / slope  # type: ignore[assignment, operator]
+    return at_force(finger, trace, force, count)
 
 
 def state_of(quantity: str, other: str) -> str:
@@ -165,8 +140,8 @@ def state_of(quantity: str, other: str) -> str:
 
 def value(scene: Scene, quantity: str, trace: Trace, total: Total) -> float:
     """Return a quantity of a finger (SI)."""
-    if quantity in SUMS:
-        return total.totals[SUMS[quantity]]
+    if quantity in _SUMS:
+        return total.totals[_SUMS[quantity]]
     if quantity == "share":
         return total.totals["contact_area"] / total.totals["gross_area"]
     if quantity == "air gap":

@@ -1,32 +1,26 @@
 """The bands that a scene's assumptions put on friction, by charged cylinders: over closures, and over all of them.
 
 **Closures.** A result has one model of roughness. The other ones of the package, on the same rms height, wavelength and
-modulus, give other attractions, and which one is a finger's is open (docs/microscale.md). On the roughness of a fitted
-finger each has the rms height of the finger's air gap instead. Their µ_app at full slip is that of the result, times
-the ratio of the charged cylinders' with the two closures. The contact is that of the result without voltage where it
-has one, else the default finger's.
+modulus, give other attractions (docs/microscale.md); on the roughness of a fitted finger each has the rms height of the
+finger's air gap instead. Their µ_app at full slip is that of the result, times the ratio of the charged cylinders' with
+the two closures. The contact is that of the result without voltage where it has one, else the default finger's.
 
-**All assumptions.** The ± of a result is what mesh and penalty leave unsolved. Its assumptions move µ_app by more
-(docs/assumptions.md). Each part changes one of them, by the same ratio:
+**All assumptions.** The ± of a result is what mesh and penalty leave unsolved; its assumptions move µ_app by more. Each
+part changes one of them, by the same ratio. The changes are conventions (docs/assumptions.md):
 
 - friction law: to Coulomb's law, and to a constant shear stress on the ridges in contact (:class:`.Derjaguin` without a
-  friction coefficient). Each has the friction of the result's own law without voltage, at the same force;
+  friction coefficient), with the friction of the result's own law without voltage, at the same force;
 - rough contact: to the other models of roughness;
 - tips: ridge tips half as curved, and one and a half times. The length of a contact follows the root of the radius;
 - roughness: h_rms 20 % smaller and larger, of the result's closure;
 - coating: the effective thickness h_0 of coating and skin 20 % smaller and larger;
 - slices: the sum of slices beside a finger in three dimensions, by its known error; of a whole finger alone.
 
-The band is that of the result's headline: of the whole finger wherever slices are summed over it. Ratios of the middle
-section are taken for it.
-
-The changes are conventions, those of docs/assumptions.md. Full runs of these changes are known at one load
-(``full_changes.json`` by ``python3 -m benchmarks.assumptions``). The ratio of the cylinders is taken to the power that
-gives the full model's ratio there (:func:`powers`), for friction law, tips, roughness and coating.
-
-The parts are taken as independent: the band is the root of the sum of their squares, in the logarithm of µ_app and to
-either side. A closure whose ridges adhere, beyond its table of gaps, has no number: the upper end of its part and of
-the band is then open.
+Full runs of these changes are known at one load (``full_changes.json`` by ``python3 -m benchmarks.assumptions``); the
+ratio of the cylinders is taken to the power that gives the full model's there (:func:`powers`). Ratios of the middle
+section stand for the whole finger. Parts are independent: the band is the root of the sum of their squares, in the
+logarithm of µ_app and to either side. A closure whose ridges adhere, beyond its table of gaps, has no number: the upper
+end of its part and of the band is then open.
 """
 
 import json
@@ -130,7 +124,7 @@ def friction(scene: Scene, slip: ContactState, law: Closure, press: ContactState
 
 def _solved(scene: Scene, slip: ContactState, law: Closure, press: ContactState | None, tips: float = 1.0) -> Slip:
     """Return :func:`friction`; raise SceneError without an equilibrium, and for a finger that is none of cylinders."""
-    found = _cylinders(scene if scene.drive is not None else _at(scene, slip.voltage), slip, law, press, tips)
+    found = _cylinders(scene, slip, law, press, slip.voltage, tips)
     p_c = found.f_contact / found.contact_length
     voltage = slip.voltage if scene.drive is None else float(scene.drive.effective(law(p_c).d_eq))
     if p_c > law.pressures[1] and not law.extrapolates:
@@ -140,17 +134,12 @@ def _solved(scene: Scene, slip: ContactState, law: Closure, press: ContactState 
 
 
 def _cylinders(
-    scene: Scene, slip: ContactState, law: Closure, press: ContactState | None, tips: float = 1.0
+    scene: Scene, slip: ContactState, law: Closure, press: ContactState | None, voltage: float, tips: float = 1.0
 ) -> ContactState:
-    """Return full slip of the charged cylinders at the voltage of a scene; raise SceneError as :func:`_solved`."""
-    under = scene.model_copy(update={"roughness": law, "f_ext": slip.f_ext, "force": None})
+    """Return full slip of the charged cylinders at a voltage, or under a drive; raise SceneError as :func:`_solved`."""
+    load = {"f_ext": slip.f_ext, "force": None} | ({"voltage": voltage} if scene.drive is None or not voltage else {})
     known = [replace(press, f_ext=slip.f_ext)] if press is not None and press.contact_length > 0 else []
-    (found,) = over_forces(under, [slip.f_ext], "full_slip", known, tips)
-    return found
-
-
-def _at(scene: Scene, voltage: float) -> Scene:
-    return scene.model_copy(update={"voltage": voltage})
+    return over_forces(scene.model_copy(update={"roughness": law, **load}), [slip.f_ext], "full_slip", known, tips)[0]
 
 
 def _adhere(scene: Scene, law: Closure, voltage: float) -> str:
@@ -248,10 +237,8 @@ def _part(name: str, mu: float, ratios: Sequence[float], no_number: Mapping[str,
     """
     if not ratios and not no_number:
         return {}
-    low, high = mu * min([1.0, *ratios]), mu * max([1.0, *ratios])
-    if no_number:
-        return {"name": name, "low": low, "high": None, "at_least": high, "no_number": dict(no_number)}
-    return {"name": name, "low": low, "high": high}
+    found, high = {"name": name, "low": mu * min([1.0, *ratios])}, mu * max([1.0, *ratios])
+    return found | ({"high": None, "at_least": high, "no_number": dict(no_number)} if no_number else {"high": high})
 
 
 def changes(
@@ -262,7 +249,7 @@ def changes(
     Arguments are those of :func:`friction`, and it raises SceneError of a finger that is none of cylinders.
     """
     own: Any = scene.closure()
-    still = _cylinders(_at(scene, 0.0), slip, own, press)
+    still = _cylinders(scene, slip, own, press, 0.0)
     laws = laws_like(scene.friction_law(), still.f_contact / still.contact_length)
     found: dict[str, list[tuple[Scene, Closure, float]]] = {
         LAW: [(scene.model_copy(update={"friction": law}), own, 1.0) for law in laws],

@@ -94,16 +94,11 @@ def _read(file: str) -> tuple[Region, ...]:
     return tuple(Region(**each) for each in made)
 
 
-def _regions() -> tuple[Region, ...]:
-    """Return the regions: that of the default screen, and those that ``python3 -m benchmarks.loads`` has written."""
-    return (_DEFAULT_SCREEN, *_read("cylinder_errors.json"))
-
-
 FINGERS = _read("finger_errors.json")
 """Errors of other fingers by name, of ``python3 -m benchmarks.presses``."""
-REGIONS = _regions()
-"""Errors that cover the full model's states: tests/test_known_error.py and tests/test_loads.py derive them from those
-of docs/models.json and docs/loads.json."""
+REGIONS = (_DEFAULT_SCREEN, *_read("cylinder_errors.json"))
+"""Regions of the default screen, and of ``python3 -m benchmarks.loads``. They cover the full model's states:
+tests/test_known_error.py and tests/test_loads.py derive them from those of docs/models.json and docs/loads.json."""
 
 
 # -- where ---------------------------------------------------------------------------------------------------

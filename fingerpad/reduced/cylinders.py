@@ -35,6 +35,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fingerpad.launcher import needed_by
 from fingerpad.model.cautions import examine, on_scene, sticking
 from fingerpad.reduced import cylinder_errors, press
 from fingerpad.reduced.model import STATES, Model, check_supported, reduced_state
@@ -85,6 +86,14 @@ class Cylinders(Model):
     traces = "traces of charged cylinders, indentations without voltage"
     sums = True
 
+    def check(self, scene: Scene) -> None:
+        """Refuse a scene that it does not answer for; have its finger pressed where that has not been done."""
+        super().check(scene)
+        if press.known(scene) is None:
+            with needed_by("the press of a finger"):
+                from fingerpad.runs import press as runs  # finite elements
+            runs.press(scene)
+
     def solve(self, scene: Scene, context: "RunContext") -> Result:
         """Return the answer of :func:`solve`."""
         return solve(scene)
@@ -131,13 +140,8 @@ def solve(scene: Scene) -> Result:
         cautions += _others(state, ridges[state])
     known = cylinder_errors.errors(scene.model_copy(update={"force": None}), found)
     cautions += cylinder_errors.cautions(scene, _pull(found["full_slip"]))
-    notes = (
-        source,
-        exact,
-        cylinder_errors.in_words(known),
-        "the bone's height is not in this model",
-        *map(str, examine("note", scene)),
-    )
+    notes = (source, exact, cylinder_errors.in_words(known), "the bone's height is not in this model")
+    notes += tuple(map(str, examine("note", scene)))
     gaps = [(WORDS[state], ridge.d_eq, scene.volts) for state, ridge in ridges.items()]
     cautions += on_scene(scene, found.values(), gaps)
     more: dict[str, Any] = {
@@ -188,32 +192,27 @@ def _over_forces(
 ) -> list[tuple[ContactState, RidgeState]]:
     """Return the states of :func:`over_forces`, and those of a ridge."""
     own, force, law = pressed or press.of(scene), np.array(f_ext), scene.friction_law()
-    length = own.length(f_ext, state) if isinstance(own, Press) else np.array([each.contact_length for each in own])
+    if not isinstance(own, Press):
+        length, given = np.array([(each.contact_length, each.ridges_in_contact) for each in own]).T
 
-    def solved(left: Any = 1.0) -> tuple[NDArray[np.int_], list[RidgeState]]:
+    def solved(left: Any = 1.0) -> tuple[NDArray[Any], list[RidgeState]]:
         """Return how many ridges are in contact, and their states, with a part of the press's contact left."""
-        if isinstance(own, Press):
-            ridges = own.ridge_count(f_ext, state, left)
-        else:
-            ridges = np.array([each.ridges_in_contact for each in own])
+        ridges = own.ridge_count(f_ext, state, left) if isinstance(own, Press) else given
         return ridges, _ridges(scene, state, force / ridges, left * length / ridges, tips, shear)
 
-    if state == "full_slip" and law is not None and isinstance(own, Press) and not own.slid:
-        left = own.left(law.limit, force, 0.0, length)
-        ridges, found = solved(left)
-        pulled, touching = np.array([(ridge.f_attraction, ridge.length) for ridge in found]).T * ridges / left
-        ridges, found = solved(own.left(law.limit, force, pulled, touching))
-    else:
-        ridges, found = solved()
+    left: Any = 1.0
+    if isinstance(own, Press):
+        length = own.length(f_ext, state)
+        if state == "full_slip" and law is not None and not own.slid:
+            left = own.left(law.limit, force, 0.0, length)
+            ridges, found = solved(left)
+            pulled, touching = np.array([(ridge.f_attraction, ridge.length) for ridge in found]).T * ridges / left
+            left = own.left(law.limit, force, pulled, touching)
+    ridges, found = solved(left)
     states = []
     for each, count, ridge in zip(f_ext, ridges, found, strict=True):
-        n = int(count)
-        contact = {
-            "f_contact": n * ridge.f_contact,
-            "f_electrostatic": n * ridge.f_attraction,
-            "contact_length": n * ridge.length,
-            "ridges_in_contact": n,
-        }
+        sums = {"f_contact": ridge.f_contact, "f_electrostatic": ridge.f_attraction, "contact_length": ridge.length}
+        contact = {name: int(count) * value for name, value in sums.items()} | {"ridges_in_contact": int(count)}
         under = scene.model_copy(update={"f_ext": float(each)})
         states.append((reduced_state(under, contact, state == "full_slip"), ridge))
     return states

@@ -3,20 +3,19 @@ r"""The range of friction over people, by charged cylinders: many fingers about 
 Each finger is that of the result with factors on its friction, stiffness, size, insulator and roughness
 (:mod:`fingerpad.scene.people`). Its µ_app is that of the result, times the ratio of the charged cylinders', as in
 :mod:`fingerpad.reduced.closure_band`. Its contact without voltage is that of the result by similarity: with lengths s
-and moduli m times those of the result, :math:`L(f) = s\,L_1(f / (s m))`. The finger's press gives :math:`L_1`
-(:mod:`fingerpad.reduced.press`). A result with a contact without voltage has its length, and grows with the force as
-its press, or as that of the default finger where it has none. A force in newtons stays the same: the force at the
-centre of a finger, per length, is then :math:`(s m) (s^2 m)^{-0.77}` times that of the result. The circuit of a drive
-stays the result's.
+and moduli m times those of the result, :math:`L(f) = s\,L_1(f / (s m))`, with :math:`L_1` of the finger's press. A
+result with a contact without voltage has its length, which grows as the press, or as the default finger's where there
+is none. A force in newtons stays the same: that at the centre, per length, is then :math:`(s m) (s^2 m)^{-0.77}` times
+the result's. The circuit of a drive stays the result's.
 
 The range has nine in ten of :data:`POINTS` people, from the 5th to the 95th percentile. Their factors are a Latin
 hypercube: each spread has the middles of as many equal parts, in the order of a Kronecker sequence (M. Roberts 2018,
 "The unreasonable effectiveness of quasirandom sequences").
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cache, cached_property, partial
+from functools import cache, cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -31,7 +30,7 @@ from fingerpad.scene.parameters import POWER
 from fingerpad.scene.people import SPREADS
 from variational.attraction.cylinder import Cylinder, NoEquilibriumError, RidgeState
 from variational.attraction.dielectric import insulator_thickness
-from variational.contact.friction import Friction
+from variational.attraction.tip import Tip
 from variational.roughness.closure import Closure
 from variational.state import ContactState
 
@@ -60,10 +59,6 @@ class Fingers:
     """Whether the force in newtons is the same for all, else that per length."""
     factors: Mapping[str, Array]
     """By names of :data:`.SPREADS`; of the coating's thickness by ``coating``."""
-    closures: Sequence[Closure]
-    """Of each, whose roughness and insulators the factors change."""
-    laws: Sequence[Friction]
-    """Of each, whose friction a factor multiplies."""
 
     def mu_app(self) -> Array:
         """Return µ_app of each; infinite where it has no number (:func:`fingerpad.reduced.closure_band.friction`).
@@ -73,30 +68,30 @@ class Fingers:
         """
         size, stiffness = self._factor("size"), self._factor("stiffness")
         f_ext = self.slip.f_ext * (size * stiffness * (size**2 * stiffness) ** -POWER if self.whole else size**0)
-        surfaces, every, similar = self._surfaces(), np.arange(len(f_ext)), f_ext / (size * stiffness)
+        similar, every = f_ext / (size * stiffness), np.arange(len(f_ext))
         own, left = replace(self._press, roll=size * stiffness * self._press.roll), np.ones_like(f_ext)
 
         def solved() -> tuple[Array, Array, Array]:
             """Return contact pressure (Pa), length in contact (m) and attraction (N/m)."""
             length, ridges = self._contact(similar, left)
             tip, forces = tip_of(self.scene.geometry, left * length / ridges).scaled(size), f_ext / ridges
-            ridge = Cylinder(tip, tip.modulus(forces, size * left * length / ridges), *surfaces)
+            moduli = tip.modulus(forces, size * left * length / ridges)
             parts = np.array_split(every, -(-len(every) // _TOGETHER))
-            found = [each for part in parts for each in self._solved(ridge, forces, part)]
+            found = [each for part in parts for each in self._solved(tip, moduli, forces, part)]
             none = (np.nan,) * 3
             p_c, lengths, pulled = np.array([(x.p_c, x.length, x.f_attraction) if x else none for x in found]).T
             return p_c, ridges * lengths, ridges * pulled
 
-        if self._rolls:
-            left = own.left(partial(self._limit, number=every), f_ext, 0.0, size * self._contact(similar, left)[0])
+        if self._here is None and not self._press.slid:  # else friction has rolled its ridges off already
+            left = own.left(self._limit, f_ext, 0.0, size * self._contact(similar, left)[0])
             _, length, pulled = solved()
-            left = own.left(partial(self._limit, number=every), f_ext, pulled / left, length / left)
+            left = own.left(self._limit, f_ext, pulled / left, length / left)
         p_c, length, _ = solved()
-        beyond = np.array([np.inf if law.extrapolates else law.pressures[1] for law in surfaces[1]])
-        return np.where(p_c <= beyond, self._limit(p_c, every) * length / f_ext, np.inf)
+        beyond = np.array([np.inf if law.extrapolates else law.pressures[1] for law in self._surfaces[1]])
+        return np.where(p_c <= beyond, self._limit(p_c) * length / f_ext, np.inf)
 
     def _factor(self, name: str) -> Array:
-        return self.factors.get(name, np.ones(len(self.laws)))
+        return self.factors.get(name, np.ones(len(next(iter(self.factors.values())))))
 
     @property
     def _here(self) -> ContactState | None:
@@ -105,11 +100,6 @@ class Fingers:
     @property
     def _press(self) -> press.Press:
         return press.of(_default() if self._here is not None and press.known(self.scene) is None else self.scene)
-
-    @property
-    def _rolls(self) -> bool:
-        """Whether friction rolls ridges off, which a contact of the result's own has already."""
-        return self._here is None and not self._press.slid
 
     def _contact(self, f_ext: Array, left: Array) -> tuple[Array, NDArray[Any]]:
         """Return length (m) and number of ridges in contact of the one finger without voltage, under forces (N/m).
@@ -123,44 +113,35 @@ class Fingers:
             ridges = np.maximum(np.rint(here.ridges_in_contact * ridges / ridges[-1]), 1).astype(int)
         return length[:-1], ridges[:-1]
 
-    def _surfaces(self) -> tuple[Array, list[Closure]]:
-        """Return the effective insulator thickness (m) of each finger, and its closure."""
-        electric, skin = self.scene.electric, self._factor("size") * self._factor("stratum corneum")
+    @cached_property
+    def _surfaces(self) -> tuple[Array, list[Any]]:
+        """Effective insulator thickness (m) of each finger, and its closure."""
+        electric, law = self.scene.electric, self.scene.closure()
+        skin = self._factor("size") * self._factor("stratum corneum") * self.scene.geometry.sc_thickness
         coating: Any = self._factor("coating") * electric.d_i
-        skin *= self.scene.geometry.sc_thickness
         h_0: Any = insulator_thickness(skin, electric.eps_sc, coating, electric.eps_i)  # type: ignore[arg-type]
-        laws: Any = zip(self.closures, self._factor("roughness"), h_0, strict=True)
-        return h_0, [
-            replace(law, h_rms=float(rough * law.h_rms), h_0=float(each)) if law.shared else law
-            for law, rough, each in laws
-        ]
+        if not law.shared:
+            return h_0, [law] * len(h_0)
+        rough = zip(self._factor("roughness"), h_0, strict=True)
+        return h_0, [replace(law, h_rms=float(by * law.h_rms), h_0=float(each)) for by, each in rough]  # type: ignore[attr-defined]
 
-    def _solved(self, ridge: Cylinder, forces: Array, chosen: NDArray[np.intp]) -> list[RidgeState | None]:
+    def _solved(self, tip: Tip, moduli: Array, forces: Array, chosen: NDArray[np.intp]) -> list[RidgeState | None]:
         """Return the states of a ridge of chosen fingers; None without an equilibrium."""
-        moduli, h_0 = (np.asarray(each)[chosen] for each in (ridge.modulus, ridge.h_0))
+        (h_0, closures), drive = self._surfaces, self.scene.drive
 
         def gain(p_c: Array, number: NDArray[np.intp]) -> Array:  # by shear, see fingerpad.reduced.cylinders
             return SHEAR * np.maximum(self._limit(p_c, chosen[number]) - press.KNOWN * p_c, 0.0)
 
-        mine = Cylinder(ridge.tip[chosen], moduli, h_0, [ridge.closure[k] for k in chosen], gain)  # type: ignore[index]
-        drive = self.scene.drive
+        ridge = Cylinder(tip[chosen], moduli[chosen], h_0[chosen], [closures[k] for k in chosen], gain)
         try:
-            return [*mine.under_loads(forces[chosen], self.slip.voltage if drive is None else drive.effective)]
+            return [*ridge.under_loads(forces[chosen], self.slip.voltage if drive is None else drive.effective)]
         except NoEquilibriumError:
             halves = np.array_split(chosen, 2) if len(chosen) > 1 else []
-            return [each for half in halves for each in self._solved(ridge, forces, half)] or [None]
+            return [each for half in halves for each in self._solved(tip, moduli, forces, half)] or [None]
 
-    def _limit(self, p_c: Array, number: NDArray[np.intp]) -> Array:
-        """Return the limit of friction (Pa) of numbered fingers at contact pressures (Pa)."""
-        found = np.empty_like(p_c)
-        for law, mine in self._of_laws:
-            found[mine[number]] = law.limit(p_c[mine[number]])
-        return self._factor("friction")[number] * found
-
-    @cached_property
-    def _of_laws(self) -> list[tuple[Friction, NDArray[np.bool_]]]:
-        """Laws, and of which fingers they are."""
-        return [(law, np.array([each is law for each in self.laws])) for law in {id(x): x for x in self.laws}.values()]
+    def _limit(self, p_c: Array, number: Any = slice(None)) -> Array:
+        """Return the limit of friction (Pa) of numbered fingers, or of all, at contact pressures (Pa)."""
+        return self._factor("friction")[number] * self.scene.friction_law().limit(p_c)  # type: ignore[union-attr]
 
 
 # -- the range -------------------------------------------------------------------------------------------------
@@ -185,17 +166,16 @@ def with_people(result: "Result") -> "Result":
     ``low`` and ``high``, ``whole``, and ``spreads``, the coefficients of variation that enter. An end is None where
     more people than are beyond it have no number, since their ridges adhere. Without a range it has ``why`` alone.
     """
-    slip, scene, law = result.full_slip, result.scene, result.scene.friction_law()
-    if slip is None or law is None or not slip.mu_app > 0:
+    slip, scene = result.full_slip, result.scene
+    if slip is None or scene.friction_law() is None or not slip.mu_app > 0:
         return result
     finger = result.finger if result.finger is not None and "full_slip" in result.finger.states else None
     mu = slip.mu_app if finger is None else finger.states["full_slip"].mu_app
-    names, closure = entering(scene.closure()), scene.closure()
+    names = entering(scene.closure())
     parts = dict(zip(names, _middles(POINTS, len(names)).T, strict=True))
     factors = {name: np.append(1.0, SPREADS[name].factor(part)) for name, part in parts.items()}
-    laws = ([closure] * (POINTS + 1), [law] * (POINTS + 1))
     try:
-        here, *found = Fingers(scene, slip, result.uncharged, finger is not None, factors, *laws).mu_app()
+        here, *found = Fingers(scene, slip, result.uncharged, finger is not None, factors).mu_app()
     except SceneError as error:
         return replace(result, record=result.record | {PEOPLE: {"why": str(error)}})
     if not np.isfinite(here):

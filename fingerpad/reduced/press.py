@@ -4,13 +4,16 @@ A :class:`Press` has the length in contact, the ridges in contact and the indent
 not depend on voltage, coating, roughness or friction. So the closed form of :mod:`fingerpad.reduced.cylinders` answers
 for every scene whose finger has one, whatever its shape and layers are.
 
-The press of the default finger and those of the fingers by name are data of the package (``presses.json``); others are
-made once (:mod:`fingerpad.runs.press`) and kept in the cache folder of the user, ``FINGERPAD_CACHE``. The name of a
-press is a hash of the scene's tables ``geometry``, ``materials`` and ``contact``, and of how presses are made.
+Those of the default finger and of the fingers by name are data of the package (``presses.json``); others are made once
+(:mod:`fingerpad.runs.press`) and kept in the user's cache folder, ``FINGERPAD_CACHE``, under a hash of the scene's
+tables ``geometry``, ``materials`` and ``contact``.
 
-The default finger's is of full runs with a contact size of 10 µm up to 150 N/m, at full slip with a friction
-coefficient of 0.25, of docs/models.json. Beyond, it is the last of these, times the ratios of states on a coarser mesh,
-of docs/loads.json. ``benchmarks.models`` and ``benchmarks.loads`` print the numbers. Other presses have no full slip.
+The default finger's is of full runs on facets of 10 µm up to 150 N/m, at full slip with a friction coefficient of 0.25
+(docs/models.json), and beyond by ratios of states on a coarser mesh (docs/loads.json); ``benchmarks.models`` and
+``benchmarks.loads`` print the numbers. Other presses have no full slip.
+
+A person drawn from the spreads (:mod:`fingerpad.scene.people`) has the press of the finger by name: with lengths s and
+moduli m times its own, :math:`L(f) = s\,L_1(f / (s m))`. *Assumption*: the nail, of one modulus, is rigid.
 
 **Rolling.** Friction shears a finger, its bone rises, and ridges leave the screen, while those in contact keep their
 length. The part of the contact that is left is even in the friction force. In full runs of two flat fingers, over
@@ -22,6 +25,7 @@ forces, voltages and laws of friction, it is about
 """
 
 import json
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import cache
@@ -35,6 +39,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from fingerpad.results.files import replace_json
 from fingerpad.scene.messages import SceneError, show
+from fingerpad.scene.people import PLACES, with_factors
 from fingerpad.scene.scene import Scene
 from variational.roughness import gaps
 from variational.state import ContactState
@@ -58,24 +63,37 @@ _VERSION = 1
 
 @dataclass(frozen=True)
 class Press:
-    """The contact of a finger without voltage over growing external forces."""
+    """The contact of a finger without voltage over growing external forces.
+
+    By state, which is ``charged``, normal contact, and ``full_slip`` where that is known.
+    """
 
     forces: tuple[float, ...]
     """External forces (N/m)."""
     lengths: Mapping[str, tuple[float, ...]]
-    """Length in contact (m) by state: ``charged``, normal contact, and ``full_slip`` where that is known."""
+    """Length in contact (m)."""
     ridges: Mapping[str, tuple[int, ...]]
-    """Ridges in contact, likewise."""
+    """Ridges in contact."""
     indentations: Mapping[str, tuple[float, ...]]
-    """How far the bone is lowered (m), likewise."""
+    """How far the bone is lowered (m)."""
     roll: float | Array = ROLL
     """F (N/m); of similar fingers that are solved for together one of each."""
 
     @classmethod
     def of(cls, kept: Mapping[str, Any]) -> "Press":
         """Return a press from its file."""
-        found = {name: {state: tuple(values) for state, values in kept[name].items()} for name in _COLUMNS}
-        return cls(tuple(kept["forces"]), **found)  # type: ignore[arg-type]
+        columns = ({state: tuple(values) for state, values in kept[name].items()} for name in _COLUMNS)
+        return cls(tuple(kept["forces"]), *columns)
+
+    @classmethod
+    def of_states(cls, states: Sequence[ContactState]) -> "Press":
+        """Return a press of normal contact under growing forces."""
+        lengths, ridges, depths = zip(
+            *((float(f"{x.contact_length:.6g}"), x.ridges_in_contact, float(f"{-x.bone_height:.6g}")) for x in states),
+            strict=True,
+        )
+        forces = tuple(round(x.f_ext, 6) for x in states)
+        return cls(forces, {"charged": lengths}, {"charged": ridges}, {"charged": depths})
 
     @property
     def slid(self) -> bool:
@@ -84,19 +102,25 @@ class Press:
 
     def length(self, f_ext: ArrayLike, state: str) -> Array:
         """Return the contact length (m) under external forces (N/m) in a state."""
-        return self.interpolate(f_ext, self.lengths.get(state, self.lengths["charged"]))
+        return self._at(f_ext, self.lengths, state)
 
     def ridge_count(self, f_ext: ArrayLike, state: str, left: ArrayLike = 1.0) -> NDArray[np.int_]:
         """Return the number of ridges in contact, of which a part is left; arguments of :meth:`length`."""
-        found = self.interpolate(f_ext, self.ridges.get(state, self.ridges["charged"]))
-        return np.maximum(np.rint(np.asarray(left) * found).astype(int), 1)
+        return np.maximum(np.rint(np.asarray(left) * self._at(f_ext, self.ridges, state)).astype(int), 1)
 
     def indentation(self, f_ext: ArrayLike, state: str) -> Array:
-        """Return how far the bone is lowered (m), without voltage; arguments of :meth:`length`.
+        """Return how far the bone is lowered (m), without voltage: with 200 V, at full slip, by up to 6 % more."""
+        return self._at(f_ext, self.indentations, state)
 
-        A voltage of 200 V moves the bone of the default finger at full slip by up to 6 %.
-        """
-        return self.interpolate(f_ext, self.indentations.get(state, self.indentations["charged"]))
+    def lowered(self, states: Iterable[ContactState], state: str) -> list[ContactState]:
+        """Return states of one kind with the indentations without voltage."""
+        return [replace(each, bone_height=-float(self.indentation(each.f_ext, state))) for each in states]
+
+    def _at(self, f_ext: ArrayLike, by_state: Mapping[str, Sequence[float]], state: str) -> Array:
+        """Return power laws through the two neighbours, at the ends through the last two; shape of the forces."""
+        x, y, at = np.log(self.forces), np.log(by_state.get(state, by_state["charged"])), np.log(f_ext)
+        k = np.clip(np.searchsorted(x, at) - 1, 0, len(x) - 2)
+        return np.exp(y[k] + (y[k + 1] - y[k]) * (at - x[k]) / (x[k + 1] - x[k]))
 
     def left(self, limit: Callable[[Array], Array], force: Array, attraction: Any, length: Array) -> Array:
         """Return the part of the contact without friction that is left at full slip.
@@ -113,23 +137,32 @@ class Press:
             part = np.maximum(1 - f_t**2 / (force * self.roll), _LEAST_LEFT)
         return part
 
-    def lowered(self, states: Iterable[ContactState], state: str) -> list[ContactState]:
-        """Return states of one kind with the indentations without voltage."""
-        return [replace(each, bone_height=-float(self.indentation(each.f_ext, state))) for each in states]
-
-    def interpolate(self, f_ext: ArrayLike, values: Sequence[float]) -> Array:
-        """Return power laws through the two neighbours, at the ends through the last two; shape of the forces."""
-        x, y, at = np.log(self.forces), np.log(values), np.log(f_ext)
-        k = np.clip(np.searchsorted(x, at) - 1, 0, len(x) - 2)
-        return np.exp(y[k] + (y[k + 1] - y[k]) * (at - x[k]) / (x[k + 1] - x[k]))
-
 
 _COLUMNS = ("lengths", "ridges", "indentations")
 
 
 def known(scene: Scene) -> Press | None:
     """Return the press of a scene's finger, None where it has not been made."""
-    return _found(name(scene))
+    return _found(name(scene)) or _similar(scene)
+
+
+def _similar(scene: Scene) -> Press | None:
+    """Return the press of a person: that of the finger by name on other scales; None of any other finger."""
+    middle, ends = Scene(finger=scene.finger), []
+    for each in (scene, middle):
+        ends.append((each.geometry.ridge_wavelength, getattr(each.materials.subcutis, "shear_modulus", math.nan)))
+    size, stiffness = (round(mine / own, PLACES) for mine, own in zip(*ends, strict=True))
+    try:
+        if name(with_factors(middle, {"size": size, "stiffness": stiffness})) != name(scene):
+            return None
+    except SceneError:  # values that no finger has
+        return None
+    own, scale = of(middle), size * stiffness
+    lengths, indentations = (
+        {state: tuple(size * x for x in values) for state, values in by_state.items()}
+        for by_state in (own.lengths, own.indentations)
+    )
+    return Press(tuple(scale * f_ext for f_ext in own.forces), lengths, own.ridges, indentations, scale * own.roll)
 
 
 def of(scene: Scene) -> Press:
@@ -138,14 +171,13 @@ def of(scene: Scene) -> Press:
     Raises:
         SceneError: it has not been made.
     """
-    found = known(scene)
-    if found is None:
-        whose = f" {show(scene.finger)}" if "finger" in scene.model_fields_set else ""
-        raise SceneError(
-            f"the finger{whose} of this scene has no press yet, which its closed form needs; fp.press(scene) makes it, "
-            "in about half a minute"
-        )
-    return found
+    if (found := known(scene)) is not None:
+        return found
+    whose = f" {show(scene.finger)}" if "finger" in scene.model_fields_set else ""
+    raise SceneError(
+        f"the finger{whose} of this scene has no press yet, which its closed form needs; fp.press(scene) makes it, in "
+        "about half a minute"
+    )
 
 
 def name(scene: Scene) -> str:
@@ -183,8 +215,7 @@ def keep(scene: Scene, press: Press) -> None:
 @cache
 def shipped() -> Mapping[str, Any]:
     """Return the presses of the package by name."""
-    kept: dict[str, Any] = json.loads((files("fingerpad.reduced") / "presses.json").read_text(encoding="utf-8"))
-    return kept
+    return dict(json.loads((files("fingerpad.reduced") / "presses.json").read_text(encoding="utf-8")))
 
 
 @cache

@@ -24,7 +24,7 @@ _WIDE = 1.3  # rms of deviations, in spreads, from which on it is mentioned
 
 def tables(found: Any) -> Iterator[tuple[str, list[str], list[list[str]]]]:
     """Yield title, heads and rows of each table of a calibration."""
-    people, keys = not found.people.empty, by_name(Scene)
+    people, keys = bool(found.values.spread.any()), by_name(Scene)
     heads = ["key", "value", "unit", "95 % region", *["between people"] * people]
     rows = [
         [key, f"{v.value:.4g}", keys[key].unit, f"{v.low:.4g} to {v.high:.4g}", *[f"{100 * v.spread:.0f} %"] * people]
@@ -34,16 +34,10 @@ def tables(found: Any) -> Iterator[tuple[str, list[str], list[list[str]]]]:
     if len(found.values) > 1:
         numbers = found.correlation.map("{:.2f}".format)
         yield "Correlations", ["", *numbers], [[key, *row] for key, *row in numbers.itertuples()]
-    if people:
-        numbers = found.people.map("{:.4g}".format)
-        yield "Participants", ["participant", *numbers], [[name, *row] for name, *row in numbers.itertuples()]
     for words, rows_of in (("Residuals, in σ", ~found.rows.held_out), ("Held out, in σ", found.rows.held_out)):
         if rows_of.any():
-            yield (
-                words,
-                ["quantity", "values", "within the band", "mean", "rms", "largest"],
-                [[quantity, *_residuals(each)] for quantity, each in found.rows[rows_of].groupby("quantity")],
-            )
+            heads = ["quantity", "values", "within the band", "mean", "rms", "largest"]
+            yield words, heads, [[of, *_residuals(each)] for of, each in found.rows[rows_of].groupby("quantity")]
     for kind, each in found.evidence.groupby("kind"):
         rows = [[r.name, *map(_number, (r.AICc, r.difference, r.weight)), r.values] for r in each.itertuples()]
         yield f"Evidence: {kind}", ["", "AICc", "above the least", "weight", "fitted values"], rows
@@ -76,9 +70,9 @@ def remarks(found: Any) -> list[str]:
     """Return what a reader must know beside the tables."""
     fitted, held = found.rows[~found.rows.held_out], found.rows[found.rows.held_out]
     people = fitted.participant.nunique()
-    of = f" of {people} participants" if people > 1 else ""
-    lines = [f"Fitted to {len(fitted)} values{of}; AICc compares closures and friction laws, the least is the best."]
-    if people > 1 and found.people.empty:
+    lines = [f"Fitted to {len(fitted)} values{f' of {people} participants' if people > 1 else ''}."]
+    lines += [] if found.evidence.empty else ["AICc compares closures and friction laws, the least is the best."]
+    if people > 1 and not found.values.spread.any():
         lines.append("There are too few participants for a spread between them: they are taken as one.")
     rms = float(np.sqrt((fitted.deviation**2).mean()))
     lines += [f"Rows scatter by {100 * found.noise:.2g} %, estimated."] if found.noise == found.noise else []

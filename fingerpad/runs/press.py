@@ -2,8 +2,7 @@
 
 Half of the finger is pressed on coarse elements. Its states under :data:`fingerpad.reduced.press.FORCES` are solved for
 again on a mesh that is fine where their contact ends, since the length in contact has its error there. Skin sticks as
-in a run, with the default friction coefficient. What a run makes of the press does not depend on friction, voltage,
-coating and roughness of the scene.
+in a run, with the default friction coefficient, whatever the scene's is.
 """
 
 import sys
@@ -25,8 +24,7 @@ from geometry.profiles import GeometryError
 from variational.solvers.continuation import StepFailed
 
 _LEAST = 4  # forces that are enough, where larger ones are not reached
-_TOUCHING = 0.7  # of a ridge's period: flat tips touch with two thirds of it
-_GROWTH = 0.5
+_SHAPE = {"growth": 0.5, "touching_fraction": 0.7}  # of the mesh; flat tips touch with two thirds of a ridge's period
 
 
 def press(scene: Scene | None = None) -> Press:
@@ -42,18 +40,17 @@ def press(scene: Scene | None = None) -> Press:
     scene = Scene() if scene is None else scene
     check_supported(scene, "cylinders")
     found = known(scene)
-    if found is not None:
-        return found
-    began = time.process_time()
-    _say("one press of this finger is made for its closed form; it takes about half a minute, once")
-    try:
-        found = made(scene)
-    except (GeometryError, StepFailed) as error:
-        raise SceneError(
-            f"the press of this finger, of which its closed form is made, failed: {error}; use the model 'full'"
-        ) from error
-    keep(scene, found)
-    _say(f"the press took {time.process_time() - began:.0f} s and is kept in {file_of(scene)}")
+    if found is None:
+        began = time.process_time()
+        _say("one press of this finger is made for its closed form; it takes about half a minute, once")
+        try:
+            found = made(scene)
+        except (GeometryError, StepFailed) as error:
+            raise SceneError(
+                f"the press of this finger, of which its closed form is made, failed: {error}; use the model 'full'"
+            ) from error
+        keep(scene, found)
+        _say(f"the press took {time.process_time() - began:.0f} s and is kept in {file_of(scene)}")
     return found
 
 
@@ -69,18 +66,17 @@ def made(scene: Scene) -> Press:
         GeometryError: the finger cannot be meshed.
         StepFailed: fewer than four of the forces are reached.
     """
-    wave = scene.geometry.ridge_wavelength
-    history = [{"name": f"press {f_ext:g}", "f_ext": f_ext} for f_ext in FORCES]
-    sizes = {name: part * wave for name, part in MESH.items()}
-    mesh = MeshSize(**sizes, growth=_GROWTH, touching_fraction=_TOUCHING)
+    wave, history = scene.geometry.ridge_wavelength, [{"name": f"press {f:g}", "f_ext": f} for f in FORCES]
+    mesh = MeshSize(**_SHAPE, **{name: part * wave for name, part in MESH.items()})
     tables = {"geometry": scene.geometry, "materials": scene.materials, "contact": scene.contact, "mesh": mesh}
     bare = Scene(history=history, output={"errors": False, "receptors": False}).model_copy(update=tables)  # type: ignore[arg-type]
     model, states = _pressed(FingerModel(by_rule(bare), plan(bare)))
     fine = model.changed(mesh=model.mesh.model_copy(update={"contact": FINE * wave}))
-    return _of_states(solve_again(fine, states, MPI.COMM_SELF).states)
+    found = solve_again(fine, states, MPI.COMM_SELF).states.values()
+    return Press.of_states(sorted((each.state for each in found), key=lambda state: state.f_ext))
 
 
-def _pressed(model: FingerModel) -> tuple[FingerModel, dict[str, State]]:
+def _pressed(model: FingerModel) -> tuple[FingerModel, Mapping[str, State]]:
     """Return the states at the forces on the mesh of the path, and the model with all ridges that they need."""
     simulation = Simulation(model, MPI.COMM_SELF, on_load=lambda: recorder.keep(simulation.states[-1].load))
     recorder = StateRecorder(simulation)
@@ -92,15 +88,3 @@ def _pressed(model: FingerModel) -> tuple[FingerModel, dict[str, State]]:
         restart = None
     simulation.finger.solver.iteration.free()
     return (model, recorder.states) if restart is None else _pressed(restart.model)
-
-
-def _of_states(found: Mapping[str, State]) -> Press:
-    states = sorted((each.state for each in found.values()), key=lambda state: state.f_ext)
-    return Press.of(
-        {
-            "forces": [round(state.f_ext, 6) for state in states],
-            "lengths": {"charged": [float(f"{state.contact_length:.6g}") for state in states]},
-            "ridges": {"charged": [state.ridges_in_contact for state in states]},
-            "indentations": {"charged": [float(f"{-state.bone_height:.6g}") for state in states]},
-        }
-    )

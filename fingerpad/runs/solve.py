@@ -16,7 +16,6 @@ from fingerpad.model.cautions import examine
 from fingerpad.model.options import check
 from fingerpad.reduced.cylinders import Cylinders
 from fingerpad.reduced.model import Model
-from fingerpad.reduced.press import known
 from fingerpad.results.data import FULL_WORDS, MODEL_WORDS
 from fingerpad.results.data import checked as checked_outputs
 from fingerpad.results.files import replace_json
@@ -54,20 +53,8 @@ class _Full(Model):
         return full.run(scene, context)
 
 
-class _ClosedForm(Cylinders):
-    """The closed form, of a finger that is pressed first where that has not been done (:mod:`fingerpad.runs.press`)."""
-
-    def check(self, scene: Scene) -> None:
-        """Refuse a scene that it does not answer for; have its finger pressed."""
-        super().check(scene)
-        if known(scene) is None:
-            with needed_by("the press of a finger"):
-                from fingerpad.runs.press import press  # finite elements
-            press(scene)
-
-
 MODELS: dict[str, Model] = {
-    "cylinders": _ClosedForm(),
+    "cylinders": Cylinders(),
     "full": _Full(),
 }
 """The models by name, the cheapest first: where a reduced model of one's own is registered."""

@@ -21,31 +21,16 @@ from geometry.parameters import Fingertip
 
 PAPER = "paper"
 FingerName = Literal["paper", "fitted", "moist", "held", "woman", "child", "old", "callused", "dry"]
-_OF_RIDGES = (  # lengths that go with the ridges
-    "sc_thickness",
-    "ve_thickness",
-    "dermis_thickness",
-    "ridge_amplitude",
-    "intermediate_ridge_height",
-    "limiting_ridge_height",
-    "merkel_offset",
-    "meissner_offset",
-)
-_OF_SIZE = (  # lengths that go with the finger's
-    "width",
-    "height",
-    "bone_width",
-    "bone_height",
-    "bone_centre",
-    "nail_thickness",
-    "nail_half_width",
-    "nail_bed_half_width",
+_LAYERS = ("sc_thickness", "ve_thickness", "dermis_thickness", "merkel_offset", "meissner_offset")
+_OF_RIDGES = (*_LAYERS, "ridge_amplitude", "intermediate_ridge_height", "limiting_ridge_height")
+_OF_SIZE = (
+    *("width", "height", "bone_width", "bone_height", "bone_centre"),
+    *("nail_thickness", "nail_half_width", "nail_bed_half_width"),
 )
 _SC = 300e-6  # m, stratum corneum of the fitted finger
 _PAD = 28e-3  # m, radius and length of the default pad along the finger
-SOFT = {"subcutis": 25e3, "dermis": 2.55e3, "viable_epidermis": 61.75e3, "stratum_corneum": 86.76e3}
-"""Shear moduli (Pa) of the default finger's soft layers (Table 2)."""
-_FITTED = {"subcutis": 2.5e3, "dermis": 6.7e3, "viable_epidermis": 0.5e6, "stratum_corneum": 0.5e6}  # the same, fitted
+SOFT = {"subcutis": 2.5e3, "dermis": 6.7e3, "viable_epidermis": 0.5e6, "stratum_corneum": 0.5e6}
+"""Shear moduli (Pa) of the fitted finger's soft layers."""
 _SHEAR = 14e3  # Pa, of wet ridges
 AIR_GAP = {
     "BearingArea": 2.69e-6,
@@ -136,7 +121,7 @@ def _shape(ridges: float, size: float) -> dict[str, float]:
 
 def _moduli(factor: float = 1.0) -> dict[str, float]:
     """Return the shear moduli of the soft layers, in parts of the fitted ones."""
-    return {f"materials.{layer}.shear_modulus": _round(factor * value) for layer, value in _FITTED.items()}
+    return {f"materials.{layer}.shear_modulus": _round(factor * value) for layer, value in SOFT.items()}
 
 
 def _surface(young: float, tissue: str, leak: str) -> dict[str, Any]:
@@ -156,10 +141,7 @@ _GEOMETRY = (
         "0.38 ± 0.07 of the gross area",
         ("share_db1", "share_db2"),
     ),
-    Trait(
-        {"geometry.sc_thickness": _SC},
-        "Some 300 µm on a fingertip (doi 10.1098/rsif.2012.0467, a caption)",
-    ),
+    Trait({"geometry.sc_thickness": _SC}, "Some 300 µm on a fingertip (doi 10.1098/rsif.2012.0467, a caption)"),
     Trait(
         _moduli(),
         "Young's moduli of stratum corneum and epidermis, across, are 1 to 2 MPa each, without a difference (Geerligs "
@@ -167,11 +149,7 @@ _GEOMETRY = (
         "abstract); both are 0.5 of that, fitted to depth and gross area under 1 N",
         ("gross_1n", "depth_1n"),
     ),
-    Trait(
-        {_H_RMS: AIR_GAP["BearingArea"]},
-        "An air gap of 2 µm where ridges bear 18 kPa, for each closure",
-        ("gap",),
-    ),
+    Trait({_H_RMS: AIR_GAP["BearingArea"]}, "An air gap of 2 µm where ridges bear 18 kPa, for each closure", ("gap",)),
 )
 _DRY = (
     Trait({"friction": 0.25}, "Dry touchscreens, short contact", ("friction_input",)),
@@ -185,89 +163,73 @@ _WET = (
     ),
     Trait(_surface(0.32e6, "moist", "moist"), _OF_SURFACE),
 )
-_FITTED_FINGER = (*_GEOMETRY, *_DRY)
+
+
+def _differs(words: str, *traits: Trait, remark: str = NOT_MEASURED) -> NamedFinger:
+    """Return a finger that differs from the fitted one."""
+    return NamedFinger(words, (*_GEOMETRY, *_DRY, *traits), remark)
+
 
 FINGERS = MappingProxyType(
     {
         PAPER: NamedFinger("the default finger, with the geometry and the materials of the paper", remark=""),
-        "fitted": NamedFinger("a dry finger, fitted to measurements", _FITTED_FINGER),
+        "fitted": NamedFinger("a dry finger, fitted to measurements", (*_GEOMETRY, *_DRY)),
         "moist": NamedFinger("the fitted finger, sweating or wetted", (*_GEOMETRY, *_WET), MOISTURE),
         "held": NamedFinger("the fitted finger after 10 s or more on glass", (*_GEOMETRY, *_WET), MOISTURE),
-        "woman": NamedFinger(
+        "woman": _differs(
             "a woman, 18 years or older",
-            (
-                *_FITTED_FINGER,
-                Trait(
-                    {"geometry.ridge_wavelength": 441e-6},
-                    f"Mean of 33 women; 23 men have 492 µm. {_RIDGES}",
-                ),
-                Trait(
-                    _shape(0.913, 0.913),
-                    "Assumption: all lengths go with the distance of ridges, 0.913 of the fitted finger's",
-                ),
-                Trait(
-                    _moduli(1.17),
-                    f"Young's modulus is 17 % higher for women ({_STIFFNESS}). Assumption: in all soft layers alike, "
-                    "and the fitted finger is a man's",
-                ),
+            Trait({"geometry.ridge_wavelength": 441e-6}, f"Mean of 33 women; 23 men have 492 µm. {_RIDGES}"),
+            Trait(
+                _shape(0.913, 0.913),
+                "Assumption: all lengths go with the distance of ridges, 0.913 of the fitted finger's",
+            ),
+            Trait(
+                _moduli(1.17),
+                f"Young's modulus is 17 % higher for women ({_STIFFNESS}). Assumption: in all soft layers alike, "
+                "and the fitted finger is a man's",
             ),
         ),
-        "child": NamedFinger(
+        "child": _differs(
             "a child of 3 to 10 years",
-            (
-                *_FITTED_FINGER,
-                Trait(
-                    {"geometry.ridge_wavelength": 354e-6},
-                    f"Mean of 21 children of 4 to 10 years. {_RIDGES}",
-                ),
-                Trait(
-                    _shape(0.733, 0.876) | {"geometry.ridge_count": 65},
-                    "Index fingers of 160 children of 3 to 10 years have a mean diameter, by girth, of 15 mm (doi "
-                    "10.1016/j.aanat.2010.03.002, abstract); the fitted finger has 17.1 mm. Assumption: outline, bone, "
-                    "nail and pad have this scale, 0.876, and layers that of the ridges, 0.733; as many ridges as "
-                    "cover the palmar half; stiffness, friction and roughness are the fitted finger's",
-                ),
+            Trait({"geometry.ridge_wavelength": 354e-6}, f"Mean of 21 children of 4 to 10 years. {_RIDGES}"),
+            Trait(
+                _shape(0.733, 0.876) | {"geometry.ridge_count": 65},
+                "Index fingers of 160 children of 3 to 10 years have a mean diameter, by girth, of 15 mm (doi "
+                "10.1016/j.aanat.2010.03.002, abstract); the fitted finger has 17.1 mm. Assumption: outline, bone, "
+                "nail and pad have this scale, 0.876, and layers that of the ridges, 0.733; as many ridges as "
+                "cover the palmar half; stiffness, friction and roughness are the fitted finger's",
             ),
         ),
-        "old": NamedFinger(
+        "old": _differs(
             "a person of some 60 years or older",
-            (
-                *_FITTED_FINGER,
-                Trait(
-                    _moduli(1.27),
-                    "Surface waves on a man's finger take 3.2 m/s at 26 years and 3.6 m/s at 58, so that the modulus "
-                    f"grows by 27 % ({_STIFFNESS}). Assumption: in all soft layers alike",
-                ),
-                Trait(
-                    {"friction": 0.2, "roughness.young": 3.2e6},
-                    "Moisture and friction are lower (doi 10.1038/s41598-018-23688-6, abstract). Assumption: as those "
-                    "of the dry finger",
-                ),
+            Trait(
+                _moduli(1.27),
+                "Surface waves on a man's finger take 3.2 m/s at 26 years and 3.6 m/s at 58, so that the modulus "
+                f"grows by 27 % ({_STIFFNESS}). Assumption: in all soft layers alike",
             ),
-            MOISTURE,
+            Trait(
+                {"friction": 0.2, "roughness.young": 3.2e6},
+                "Moisture and friction are lower (doi 10.1038/s41598-018-23688-6, abstract). Assumption: as those "
+                "of the dry finger",
+            ),
+            remark=MOISTURE,
         ),
-        "callused": NamedFinger(
+        "callused": _differs(
             "a finger with calluses, of manual work or strings",
-            (
-                *_FITTED_FINGER,
-                Trait(
-                    {"geometry.sc_thickness": 2 * _SC},
-                    "Assumption: twice the fitted finger's. No measured callus was read",
-                ),
+            Trait(
+                {"geometry.sc_thickness": 2 * _SC},
+                "Assumption: twice the fitted finger's. No measured callus was read",
             ),
         ),
-        "dry": NamedFinger(
+        "dry": _differs(
             "a finger drier than the fitted one",
-            (
-                *_FITTED_FINGER,
-                Trait(
-                    {"friction": 0.2},
-                    "Moist skin has 1.6 times the friction of dry skin: palms on paper, suede and tape have 1.56, 1.69 "
-                    f"and 1.61 ({_FRICTION}). Assumption: so on glass, with the fitted finger halfway between",
-                ),
-                Trait({"roughness.young": 3.2e6}, _OF_SURFACE),
+            Trait(
+                {"friction": 0.2},
+                "Moist skin has 1.6 times the friction of dry skin: palms on paper, suede and tape have 1.56, 1.69 "
+                f"and 1.61 ({_FRICTION}). Assumption: so on glass, with the fitted finger halfway between",
             ),
-            MOISTURE,
+            Trait({"roughness.young": 3.2e6}, _OF_SURFACE),
+            remark=MOISTURE,
         ),
     }
 )

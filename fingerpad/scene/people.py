@@ -27,22 +27,19 @@ Array = NDArray[np.float64]
 _CUT = 3.0  # of z
 _PRESSURES = np.geomspace(1e2, 1e6, 5)  # Pa, at which a law with other numbers is compared
 _MOST = 100_000  # people
-_PLACES = 6  # of a drawn factor after the point, fewer than those in which machines differ
+PLACES = 6
+"""Of a drawn factor after the point, fewer than those in which machines differ."""
 
 
 @dataclass(frozen=True)
 class Spread:
     """Distribution of a factor between people."""
 
-    words: str
-    """What differs."""
     kind: Literal["lognormal", "normal"]
     cv: float
     """Coefficient of variation c."""
-    source: str
-    """Where it is from; what begins with "Assumption" no source gives."""
     keys: Callable[[Scene, float], dict[str, Any]]
-    """Returns the changes of a scene, nested, that multiply its keys by a factor."""
+    """Returns the changes of a scene, nested, that multiply its keys by a factor; has its source."""
 
     def factor(self, part: ArrayLike) -> Array:
         """Return the factors below which a part of all people is; ``part`` is from 0 to 1, of any shape."""
@@ -52,7 +49,11 @@ class Spread:
 
 
 def _friction(scene: Scene, factor: float) -> dict[str, Any]:
-    """Return the friction coefficient, or the law whose limit is a multiple of the scene's at every pressure."""
+    """Return a friction coefficient, or a law whose limit is a multiple of the scene's at every pressure.
+
+    Coefficients of variation of 0.25 to 0.75 between 16 people, static (Ergonomics 2010, 53(6), abstract; row
+    friction_between of data/findings.toml). *Assumption*: the middle of them.
+    """
     own = scene.friction
     if not isinstance(own, Friction):
         return {"friction": factor * own}
@@ -64,6 +65,11 @@ def _friction(scene: Scene, factor: float) -> dict[str, Any]:
 
 
 def _stiffness(scene: Scene, factor: float) -> dict[str, Any]:
+    """Return shear moduli, which go with the square of the speed of surface waves.
+
+    3.2 ± 0.2 m/s at 26 ± 3 years (doi 10.1098/rsos.170321, abstract; row stiffness_people). *Assumption*: in all soft
+    layers alike.
+    """
     layers = {name: getattr(scene.materials, name) for name in SOFT}
     for name, law in layers.items():
         if not hasattr(law, "shear_modulus"):
@@ -72,6 +78,10 @@ def _stiffness(scene: Scene, factor: float) -> dict[str, Any]:
 
 
 def _size(scene: Scene, factor: float) -> dict[str, Any]:
+    """Return all lengths. 33 women have ridges 441 ± 33 µm apart (Králík and Novotný 2003, whose data were read).
+
+    *Assumption*: all lengths go with the distance of ridges.
+    """
     shape, along = scene.geometry, scene.slices
     if shape.file is not None or along.height is not None:
         key = "geometry.file" if shape.file is not None else "slices.height"
@@ -81,55 +91,27 @@ def _size(scene: Scene, factor: float) -> dict[str, Any]:
 
 
 def _insulator(scene: Scene, factor: float) -> dict[str, Any]:
+    """Return the stratum corneum's thickness as an insulator, without effect on stiffness.
+
+    18.3 ± 4.9, 11.0 ± 2.2 and 14.9 ± 3.4 µm on forearm, shoulder and buttock of 71 people (doi
+    10.1080/00015550310015419, abstract). *Assumption*: as on fingertips.
+    """
     return {"electric": {"eps_sc": scene.electric.eps_sc / factor}}
 
 
 def _roughness(scene: Scene, factor: float) -> dict[str, Any]:
+    """Return the rms height. *Assumption*: 20 %, as in the likely range; no spread between people was read."""
     if not hasattr(scene.roughness, "h_rms"):
         raise SceneError(f"roughness is {scene.roughness}; it must have an h_rms to differ between people")
     return {"roughness": {"h_rms": factor * scene.roughness.h_rms}}
 
 
 SPREADS: Mapping[str, Spread] = {
-    "friction": Spread(
-        "friction coefficient, or shear stress",
-        "lognormal",
-        0.5,
-        "Coefficients of variation of 0.25 to 0.75 between 16 people, static (Ergonomics 2010, 53(6), abstract; row "
-        "friction_between of data/findings.toml). Assumption: the middle of them",
-        _friction,
-    ),
-    "stiffness": Spread(
-        "shear moduli of all soft layers",
-        "normal",
-        0.12,
-        "Surface waves on fingers take 3.2 ± 0.2 m/s at 26 ± 3 years, and moduli go with their square (doi "
-        "10.1098/rsos.170321, abstract; row stiffness_people). Assumption: in all layers alike",
-        _stiffness,
-    ),
-    "size": Spread(
-        "all lengths of the finger",
-        "normal",
-        0.075,
-        "33 women have ridges 441 ± 33 µm apart (Králík and Novotný 2003, whose data were read). Assumption: all "
-        "lengths go with the distance of ridges",
-        _size,
-    ),
-    "stratum corneum": Spread(
-        "its thickness as an insulator, by electric.eps_sc",
-        "lognormal",
-        0.25,
-        "18.3 ± 4.9, 11.0 ± 2.2 and 14.9 ± 3.4 µm on forearm, shoulder and buttock of 71 people (doi "
-        "10.1080/00015550310015419, abstract). Assumption: as on fingertips, without effect on stiffness",
-        _insulator,
-    ),
-    "roughness": Spread(
-        "rms height h_rms",
-        "lognormal",
-        0.2,
-        "Assumption: no spread between people was read; 20 % as in the likely range (docs/assumptions.md)",
-        _roughness,
-    ),
+    "friction": Spread("lognormal", 0.5, _friction),
+    "stiffness": Spread("normal", 0.12, _stiffness),
+    "size": Spread("normal", 0.075, _size),
+    "stratum corneum": Spread("lognormal", 0.25, _insulator),
+    "roughness": Spread("lognormal", 0.2, _roughness),
 }
 """Spreads between people, for all fingers: the one table of them."""
 
@@ -154,7 +136,7 @@ def people(n: int, seed: int, finger: str = "fitted", **changes: Any) -> list[Sc
             raise SceneError(f"{name} is {show(value)}; it must be a whole number from {least} to {most}")
     middle = Scene(finger=finger).replace(**changes)
     parts = np.random.Generator(np.random.PCG64(int(seed))).random((n, len(SPREADS)))
-    columns = [each.factor(column).round(_PLACES) for each, column in zip(SPREADS.values(), parts.T, strict=True)]
+    columns = [each.factor(column).round(PLACES) for each, column in zip(SPREADS.values(), parts.T, strict=True)]
     return [with_factors(middle, dict(zip(SPREADS, row, strict=True))) for row in zip(*columns, strict=True)]
 
 
