@@ -59,7 +59,7 @@ def test_forces_left_at_a_node(floor, words):
 def test_limit_of_what_is_left(node, sideways, down, words):
     """A millionth of 75 N/m, at a node and between the two ridges on the screen and the bone."""
     friction, contact, attraction = [20.0, 5.0 + sideways * 75e-6], [60.0, 40.0 + down * 75e-6], [15.0, 10.0]
-    parts = {"f_friction": friction, "f_contact": contact, "f_attraction": attraction}
+    parts = {"f_friction": friction, "f_contact": contact, "f_attraction": attraction, "f_adhesion": [0.0, 0.0]}
     loads = SimpleNamespace(**{name: np.array(values) for name, values in parts.items()})
     refused = pytest.raises(StepFailed, match=f"^here: .*{words}") if words else nullcontext()
     with refused:

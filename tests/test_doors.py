@@ -12,7 +12,7 @@ from fingerpad.scene.loads import Load
 from fingerpad.scene.parameters import Contact
 from geometry.parameters import Fingertip, MeshSize
 from tests import fuzz_files
-from tests.fuzz import bad_refusal, fault, mutant, prepare
+from tests.fuzz import Mutant, bad_refusal, fault, mutant, prepare
 
 ASKED = {"mu_app": 0.01}
 LOADS = [{"name": "press", "f_ext": 20.0}, {"name": "charge", "voltage": 80.0}]
@@ -192,9 +192,10 @@ def test_mutants_of_scenes_and_lines(folder):
 )
 @pytest.mark.slow
 def test_what_is_broken_is_found(folder, monkeypatch, broken, value):
-    """Without one of the guards there is a mutant that shows it: at present the two that are tried first."""
+    """Without one of the guards there is a mutant that shows it: the first is made for sizes."""
     monkeypatch.setattr(broken, value)
-    assert any(fault(mutant(SEED, k), folder)[0] for k in (75, 265, *range(400)))
+    made = [Mutant(0, b"mesh.contact = 2e-8\n", ("{folder}/scene.toml",))]
+    assert any(fault(each, folder)[0] for each in (*made, *(mutant(SEED, k) for k in (75, *range(400)))))
 
 
 # -- files -------------------------------------------------------------------------------------------------

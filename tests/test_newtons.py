@@ -15,7 +15,7 @@ from fingerpad.runs import newtons
 from fingerpad.runs.branches import Branches
 from fingerpad.scene import Load, SceneError, from_data
 from fingerpad.slices import traces
-from fingerpad.slices.total import BeyondTrace
+from fingerpad.slices.total import RATIOS, BeyondTrace
 from tests.runs import path_of, tables_alone
 from tests.small_finger import NINE, small
 from variational.solvers.continuation import StepFailed
@@ -57,6 +57,8 @@ def test_states_on_the_scenes_mesh_are_those_of_a_run(found):
         run = fp.run(scene().replace(force=None, f_ext=state.f_ext, output=output)).full_slip
         assert run.ridges_in_contact == state.ridges_in_contact
         for name, error in run.error.known().items():
+            if name in run.error.own:
+                continue  # an output, which states of traces do not have
             value = getattr(state, name)
             assert getattr(run, name) == pytest.approx(value, abs=min(error, 1e-2 * abs(value))), name
 
@@ -74,11 +76,12 @@ def test_traces_meet_the_states_on_the_scenes_mesh(found):
 
 
 def test_errors_have_four_parts(found):
-    """All of which are printed, and none of which is zero or all."""
+    """All of which are printed, and none of which is zero or all; two sums of one error have a ratio without."""
     assert "by mesh of the cross-section, coarser mesh of the traces, penalty, points of the traces" in str(found[0])
     for name, parts in found[0].finger.carried.items():
         for part, known in parts.items():
-            assert all(0 < value < 0.5 for value in known.values()), (name, part, known)
+            sums = {key: error for key, error in known.items() if key not in RATIOS}
+            assert all(0 < error < 0.5 for error in sums.values()), (name, part, known)
     assert found[0].full_slip.error.mu_app > 0
 
 

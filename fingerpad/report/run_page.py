@@ -159,13 +159,10 @@ def _raster(result: Result, spikes: Spikes) -> Markup:
     states = without_parts_of_jumps([state for state in result.steps if state.ridges is not None])
     states = [state for k, state in enumerate(states) if k == len(states) - 1 or states[k + 1].time > 0]
     chosen = [states[int(k)] for k in np.unique(np.linspace(0, len(states) - 1, _MAX_STATES).round())]
-    pressures = [_KPA * np.asarray(state.ridges.p_c) for state in chosen if state.ridges is not None]
-    numbers: Any = [] if not chosen or chosen[0].ridges is None else chosen[0].ridges.number
     time = [_MS * state.time for state in chosen]
-    ridges = [
-        Series(f"ridge {number}", time, np.asarray(each))
-        for number, each in zip(numbers, np.transpose(pressures), strict=True)
-    ]
+    means = [dict(zip(state.ridges.number, _KPA * state.ridges.p_c, strict=True)) for state in chosen if state.ridges]
+    numbers = sorted({number for mean in means for number in mean})  # a path may go on with more ridges
+    ridges = [Series(f"ridge {j}", time, np.array([mean.get(j, 0.0) for mean in means])) for j in numbers]
     panels = [Panel("pressure (kPa)", [each for each in ridges if max(each.y) > 0])]
     for law, colour in zip(spikes.laws, cycle(("blue", "vermilion", "ink", "green", "purple")), strict=False):
         mine = [(u, train) for u, train in zip(spikes.units, spikes.trains, strict=True) if u.law == law]
