@@ -75,6 +75,7 @@ def cover(count: int = TABLES) -> dict[str, int]:
 def choices(count: int = CHOICES) -> dict[str, int]:
     """Return for how many tables of each law it has less AICc than the other one, by eight forces without voltage."""
     found = dict.fromkeys(LAWS, 0)
+    law: Any
     for name, law in LAWS.items():
         for seed in range(count):
             uncharged = grid(np.geomspace(0.1, 1.0, 8), (0.0,))

@@ -48,7 +48,7 @@ def _finger(name: str) -> dict[str, Any]:
     needs = None
     with suppress(SceneError):  # a shear stress on the ridges hardly grows with the voltage
         (needs,) = fp.solve(driven, "voltage.rms", mu_app=1 + CONTRAST / 100, relative=True, between=_BETWEEN).values
-    found = {key: press[key] for key in ("indentation", "gross_area", "contact_area")}
+    found: dict[str, Any] = {key: press[key] for key in ("indentation", "gross_area", "contact_area")}
     found |= {"mu_0": slip["mu_app"], "driven": moved.values("full_slip")["mu_app"], "needs": needs}
     return found | {"leak": str(driven.electric.leak), "words": FINGERS[name].words}
 

@@ -108,9 +108,10 @@ class Study:
         group = np.ravel_multi_index(tuple(chosen), (len(self.closures), len(self.laws)))
         for k, (model, law) in enumerate(itertools.product(self.closures.values(), self.laws)):
             scene = result.scene.model_copy(update={"roughness": model, "friction": law})
-            own: Any = (scene, result.full_slip, None, head.of == WHOLE)
+            slip: Any = result.full_slip
             if (mine := group == k).any():
-                mu_app[mine] = Fingers(*own, {name: each[mine] for name, each in factors.items()}).mu_app()
+                own = {name: each[mine] for name, each in factors.items()}
+                mu_app[mine] = Fingers(scene, slip, None, head.of == WHOLE, own).mu_app()
         self.count, self.lost = self.count + len(mu_app), self.lost + int(np.isinf(mu_app).sum())
         mu_app = np.minimum(mu_app, mu_app[np.isfinite(mu_app)].max())
         share = head.error / head.value if _SOLUTION in part else 0.0

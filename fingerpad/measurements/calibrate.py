@@ -224,7 +224,7 @@ class _Problem:
         """Yield combinations of keys that the table cannot tell apart."""
         for error, vector in zip(*best.directions, strict=True):
             if error > _OPEN:
-                powers = vector / vector[abs(vector).argmax()]
+                powers = vector / vector[abs(vector).argmax()]  # type: ignore[index]
                 named = [(key, p) for key, p in zip(self.keys, powers, strict=True) if abs(p) > 0.1]
                 product = " × ".join(f"{key}^{p:.2g}".removesuffix("^1") for key, p in named)
                 far = "not known" if error > _REACH else f"known to a factor of {math.exp(error):.2g}"

@@ -75,7 +75,7 @@ class Estimate:
         for rows in self.data.people:
             j = self.jacobian[rows]
             v = j * omega @ (j * omega).T + np.diag((sigma * self.data.spread[rows]) ** 2)
-            yield rows, np.linalg.cholesky(v), np.column_stack([j, (self.data.y - self.fitted)[rows]])
+            yield rows, np.linalg.cholesky(v), np.column_stack([j, (self.data.y - self.fitted)[rows]])  # type: ignore[misc]
 
     def white(self, values: Array) -> Array:
         """Return values of the rows, shape (rows, …), whitened: with the variance 1, person by person."""
@@ -174,7 +174,7 @@ def slopes(model: Callable[[Array], Array], theta: Array, here: Array) -> Array:
     Raises:
         ValueError: the model has no value on either side.
     """
-    columns = []
+    columns: list[NDArray[np.floating]] = []
     for unit in np.eye(len(theta)):
         beside = ((step, model(theta + step * unit)) for step in (_STEP, -_STEP))
         found = next(((values - here) / step for step, values in beside if np.isfinite(values).all()), None)

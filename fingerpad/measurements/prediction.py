@@ -65,7 +65,7 @@ class ClosedForm:
             for factor in (math.exp(_PART), math.exp(-_PART)):
                 other = with_values(scene, {key: value * factor})
                 ends.append(ClosedForm(other, (), rows, state).rows(other))
-            self.exponents[key] = (ends[0] - ends[1]) / (2 * _PART)
+            self.exponents[key] = np.asarray((ends[0] - ends[1]) / (2 * _PART), dtype=float)
 
     def at(self, values: Array) -> Scene:
         """Return the scene with values of the keys, given as logarithms."""

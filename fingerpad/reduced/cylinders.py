@@ -140,8 +140,8 @@ def solve(scene: Scene) -> Result:
         cautions += _others(state, ridges[state])
     known = cylinder_errors.errors(scene.model_copy(update={"force": None}), found)
     cautions += cylinder_errors.cautions(scene, _pull(found["full_slip"]))
-    notes = (source, exact, cylinder_errors.in_words(known), "the bone's height is not in this model")
-    notes += tuple(map(str, examine("note", scene)))
+    words = (source, exact, cylinder_errors.in_words(known), "the bone's height is not in this model")
+    notes = (*words, *map(str, examine("note", scene)))
     gaps = [(WORDS[state], ridge.d_eq, scene.volts) for state, ridge in ridges.items()]
     cautions += on_scene(scene, found.values(), gaps)
     more: dict[str, Any] = {

@@ -77,7 +77,7 @@ class Fingers:
             tip, forces = tip_of(self.scene.geometry, left * length / ridges).scaled(size), f_ext / ridges
             moduli = tip.modulus(forces, size * left * length / ridges)
             parts = np.array_split(every, -(-len(every) // _TOGETHER))
-            found = [each for part in parts for each in self._solved(tip, moduli, forces, part)]
+            found = [each for part in parts for each in self._solved(tip, np.asarray(moduli, float), forces, part)]
             none = (np.nan,) * 3
             p_c, lengths, pulled = np.array([(x.p_c, x.length, x.f_attraction) if x else none for x in found]).T
             return p_c, ridges * lengths, ridges * pulled
@@ -123,7 +123,7 @@ class Fingers:
         if not law.shared:
             return h_0, [law] * len(h_0)
         rough = zip(self._factor("roughness"), h_0, strict=True)
-        return h_0, [replace(law, h_rms=float(by * law.h_rms), h_0=float(each)) for by, each in rough]  # type: ignore[attr-defined]
+        return h_0, [replace(law, h_rms=float(by * law.h_rms), h_0=float(each)) for by, each in rough]  # type: ignore[attr-defined,type-var]
 
     def _solved(self, tip: Tip, moduli: Array, forces: Array, chosen: NDArray[np.intp]) -> list[RidgeState | None]:
         """Return the states of a ridge of chosen fingers; None without an equilibrium."""

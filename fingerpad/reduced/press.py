@@ -82,7 +82,7 @@ class Press:
     @classmethod
     def of(cls, kept: Mapping[str, Any]) -> "Press":
         """Return a press from its file."""
-        columns = ({state: tuple(values) for state, values in kept[name].items()} for name in _COLUMNS)
+        columns: Any = ({state: tuple(values) for state, values in kept[name].items()} for name in _COLUMNS)
         return cls(tuple(kept["forces"]), *columns)
 
     @classmethod

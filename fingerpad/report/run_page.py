@@ -160,8 +160,9 @@ def _raster(result: Result, spikes: Spikes) -> Markup:
     states = [state for k, state in enumerate(states) if k == len(states) - 1 or states[k + 1].time > 0]
     chosen = [states[int(k)] for k in np.unique(np.linspace(0, len(states) - 1, _MAX_STATES).round())]
     time = [_MS * state.time for state in chosen]
-    means = [dict(zip(state.ridges.number, _KPA * state.ridges.p_c, strict=True)) for state in chosen if state.ridges]
-    numbers = sorted({number for mean in means for number in mean})  # a path may go on with more ridges
+    found = [state.ridges for state in chosen if state.ridges is not None]
+    means: list[dict[Any, Any]] = [dict(zip(each.number, _KPA * each.p_c, strict=True)) for each in found]
+    numbers = sorted({int(number) for mean in means for number in mean})  # a path may go on with more ridges
     ridges = [Series(f"ridge {j}", time, np.array([mean.get(j, 0.0) for mean in means])) for j in numbers]
     panels = [Panel("pressure (kPa)", [each for each in ridges if max(each.y) > 0])]
     for law, colour in zip(spikes.laws, cycle(("blue", "vermilion", "ink", "green", "purple")), strict=False):

@@ -54,7 +54,7 @@ def _closure(data: Mapping[str, Any]) -> str:
     if not isinstance(table, Mapping):
         return ""
     law = table.get("law", "BearingArea")
-    return on_roughness(getattr(law, "__name__", law), table.get("field_in_contact") is not False)
+    return on_roughness(str(getattr(law, "__name__", law)), table.get("field_in_contact") is not False)
 
 
 def with_presets(data: Mapping[str, Any], laws: Mapping[str, type]) -> Mapping[str, Any]:

@@ -115,7 +115,7 @@ def _section(traced: Traced, name: str, depth: float, wavelength: float) -> Cont
         **at,
         mu_app=mu_app,
         voltage=near.voltage,
-        f_contact=borne(at),
+        f_contact=float(borne(at)),
         bone_height=-depth,
         ridges_in_contact=near.ridges_in_contact,
         mesh_contact=end.mesh_contact,

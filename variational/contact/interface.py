@@ -46,7 +46,7 @@ class Interface:
         law = law_of(friction)
         if adhesion is not None:
             adhesion.check()
-        laws = {"formulation": formulation, "friction": law, "h_0": h_0, "attraction": attraction, "share": share}
-        laws["adhesion"] = adhesion
+        laws = {"formulation": formulation, "friction": law, "h_0": h_0, "attraction": attraction, "share": share,
+                "adhesion": adhesion}  # fmt: skip
         for name, value in laws.items():
             object.__setattr__(self, name, value)

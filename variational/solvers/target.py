@@ -147,8 +147,9 @@ class Way:
             reach: of the adhesion (m).
         """
         aim = self.target.bone_height
-        rises = aim is not None and aim > height
-        return max(_OF_REACH * reach, -_OF_DEPTH * height) / (aim - self.start.height) if rises else 1.0
+        if aim is None or aim <= height:
+            return 1.0
+        return max(_OF_REACH * reach, -_OF_DEPTH * height) / (aim - self.start.height)
 
     def longest(self, part: float, shortest_time: float) -> float:
         """Return the largest part of the target that time lets one step have, after a part of it.
