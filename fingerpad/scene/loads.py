@@ -202,7 +202,7 @@ def refuse_contradictions(
 
     Args:
         history: the loads of a scene.
-        given: the values of :data:`fingerpad.scene.fingers.DEFAULT_HISTORY` that are given.
+        given: the values of :data:`fingerpad.scene.presets.DEFAULT_HISTORY` that are given.
         errors: whether errors are estimated.
         step_scale: key of the numerics.
         follows: key of the electric part: under the mean of a drive it has no samples.
