@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from benchmarks.measured import __main__ as measured
-from benchmarks.measured import felt, findings, fingers, rows, rules
+from benchmarks.measured import felt, felt_rows, findings, fingers, rows, rules
 from benchmarks.measured.rules import HIT, MISS, PART, by_factor, by_form, by_rule, by_share
 from benchmarks.microscale import readings
 from benchmarks.runs import VOLTAGES, Unfinished
@@ -214,7 +214,7 @@ NUMBERS = {
     "subfield": {"width": 0.4e-3},
     "shear": {"vertical": 0.04, "horizontal": 0.02, "rotated": 0.1},
     "same": {law: {"charged": 100, "same": 100, "apart": 10} for law in ("SA1", "RA1")} | {"mu_app": 0.5, "sed": 0.01},
-    "thresholds": {law: (1.0, bar) for law, bar in felt.RMS.items()},
+    "thresholds": {law: (1.0, bar) for law, bar in felt_rows.RMS.items()},
 }
 """Every statement is just hit."""
 WORSE = {
@@ -239,10 +239,10 @@ WORSE = {
 def test_each_rule_of_what_is_felt_can_miss(name):
     """One number beyond its bar makes a miss of its own finding, which is a hit without."""
     numbers = copy.deepcopy(NUMBERS)
-    assert felt.ROWS[name](numbers)[1] == HIT
+    assert felt_rows.ROWS[name](numbers)[1] == HIT
     *path, key, value = WORSE[name]
     part = numbers
     for step in path:
         part = part[step]
     part[key] = value
-    assert felt.ROWS[name](numbers)[1] == MISS
+    assert felt_rows.ROWS[name](numbers)[1] == MISS

@@ -22,7 +22,7 @@ from matplotlib.figure import Figure
 
 from benchmarks import harness
 from benchmarks.harness import cells
-from benchmarks.measured import drives, felt, findings, fingers, rows, rules
+from benchmarks.measured import drives, felt, felt_rows, findings, fingers, rows, rules
 from benchmarks.measured.findings import Finding
 from benchmarks.measured.fingers import Case
 from benchmarks.runs import Unfinished
@@ -40,9 +40,9 @@ STATES = {
     "paper": "the default finger: the finding names no state, or its runs would be too long for another",
 }
 """Of the fingers that findings name."""
-_KEPT = {"felt": felt.ROWS, "viscosity": rows.TIMED}
+_KEPT = {"felt": felt_rows.ROWS, "viscosity": rows.TIMED}
 """Rows of the numbers that other commands keep."""
-_COMPUTED: dict[str, Any] = {**rows.ROWS, **felt.ROWS, **rows.TIMED}
+_COMPUTED: dict[str, Any] = {**rows.ROWS, **felt_rows.ROWS, **rows.TIMED}
 
 
 # -- runs ------------------------------------------------------------------------------------------------------
