@@ -7,29 +7,9 @@ the ridges.
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from benchmarks.measured import rules
-from benchmarks.measured.fingers import (
-    FORCE,
-    GROWS,
-    HIGH,
-    LEAST,
-    ONE,
-    ROUGHER,
-    SOFTER,
-    Array,
-    Case,
-    Computation,
-    Finger,
-    Row,
-    both,
-    both_of,
-    judge_holds,
-    judge_near,
-    judge_value,
-    slopes,
-)
+from benchmarks.measured.fingers import FORCE, GROWS, HIGH, ROUGHER, SOFTER, Array, Case, Computation, Finger, Row
 from benchmarks.measured.rules import CHANGED, EXPONENT, RATIO, SIMILAR, STRIKING, by_factor, by_form, by_share
 
 _GROWN = 0.95  # of the growth in the time of the hold
@@ -37,19 +17,19 @@ _GROWN = 0.95  # of the growth in the time of the hold
 
 # -- contact area ----------------------------------------------------------------------------------------------
 def _share(finger: Finger) -> float:
-    area, gross = (finger.at(finger.pressed, name, LEAST) for name in ("contact_area", "gross_area"))
+    area, gross = (finger.at(finger.pressed, name, rules.LEAST) for name in ("contact_area", "gross_area"))
     return area / gross
 
 
 def _one_newton(finger: Finger, name: str, scale: float) -> float:
-    return scale * finger.at(finger.pressed, name, ONE)
+    return scale * finger.at(finger.pressed, name, rules.ONE)
 
 
 def _area_form(case: Case, least: float, form: rules.Form, other: rules.Form) -> Row:
     """Judge a form of the gross area over the force from a least one (N) on, beside another one."""
     force, area = case.finger.sums(case.finger.pressed, "gross_area", least)
     misfit, beside = (rules.of_each(each, force, area).misfit for each in (form, other))
-    exponent, error = both(case.finger, lambda of: rules.exponent(*of.sums(of.pressed, "gross_area")))
+    exponent, error = rules.both(case.finger, lambda of: rules.exponent(*of.sums(of.pressed, "gross_area")))
     numbers = {"misfit": misfit, "other": beside, "exponent": float(exponent), "error": error, "most": force[-1]}
     return numbers, by_form((misfit,), (beside,))
 
@@ -64,10 +44,6 @@ def _apparent(finger: Finger, after: tuple[str, float], before: tuple[str, float
     areas = [finger.sums(getattr(finger, state)(voltage), "gross_area")[1] for state, voltage in (after, before)]
     count = min(map(len, areas))
     return np.asarray(areas[0][:count] / areas[1][:count] - 1)
-
-
-def _falls(change: Array) -> NDArray[np.bool_]:
-    return change <= -CHANGED
 
 
 def _length(finger: Finger) -> Array:
@@ -101,7 +77,7 @@ def _stuck_wet(case: Case) -> Row:
         wets, dries = (dict(zip(each.forces, _half_stuck(each), strict=True)) for each in (wet, dry))
         return np.array([wets[f] / dries[f] for f in wets if f in dries])
 
-    found, error = both_of(case, "fitted", ratio)
+    found, error = rules.both_of(case, "fitted", ratio)
     return {"low": found.min(), "high": found.max(), "error": error}, by_share(float((found > 1 + SIMILAR).mean()))
 
 
@@ -125,7 +101,7 @@ def _pressure(case: Case) -> Row:
         points = ridges.number[touch].astype(float), ridges.f_contact[touch]
         return [rules.of_largest(form, *points).misfit for form in (rules.paraboloid, rules.ellipse)]
 
-    (misfit, other), error = both(case.finger, misfits)
+    (misfit, other), error = rules.both(case.finger, misfits)
     return {"misfit": misfit, "other": other, "error": error}, by_form((misfit,), (other,))
 
 
@@ -142,7 +118,7 @@ def _change(finger: Finger, kind: str) -> Array:
 
 def _softer(case: Case) -> Row:
     """Judge either area at each softening of the stratum corneum."""
-    less, more = (both(case.finger, partial(_change, kind=f"soft {each:g}")) for each in SOFTER)
+    less, more = (rules.both(case.finger, partial(_change, kind=f"soft {each:g}")) for each in SOFTER)
     areas, gross = [less[0][0], more[0][0]], max(less[0][1], more[0][1])
     numbers = {"less": areas[0], "less_error": less[1], "more": areas[1], "error": more[1], "gross": gross}
     return numbers, by_share(float(np.mean([*(each >= STRIKING for each in areas), *[gross <= SIMILAR] * 2])))
@@ -150,7 +126,7 @@ def _softer(case: Case) -> Row:
 
 def _modulus(case: Case) -> Row:
     kinds = f"soft {SOFTER[-1]:g}", "rough"
-    (soft, error), (rough, _) = (both(case.finger, partial(_change, kind=kind)) for kind in kinds)
+    (soft, error), (rough, _) = (rules.both(case.finger, partial(_change, kind=kind)) for kind in kinds)
     numbers = {"soft": soft[0], "rough": rough[0], "error": error, "friction": ROUGHER}
     return numbers, by_share(float(abs(soft[0]) > abs(rough[0])))
 
@@ -165,29 +141,31 @@ def _time(case: Case) -> Row:
     return {"growth": growth, "until": until, "seconds": GROWS}, by_factor(until, until, GROWS, GROWS, RATIO)
 
 
-_SHRINKS = partial(judge_holds, values=partial(_apparent, after=("slip", 0.0), before=("rest", 0.0)), holds=_falls)
-_CHARGED = partial(judge_holds, values=partial(_apparent, after=("slip", HIGH), before=("slip", 0.0)), holds=_falls)
+_FALLS = partial(rules.judge_holds, holds=lambda change: change <= -CHANGED)
+_SHRINKS = partial(_FALLS, values=partial(_apparent, after=("slip", 0.0), before=("rest", 0.0)))
 ROWS: dict[str, Computation] = {
-    **dict.fromkeys(("share_db1", "share_db2", "ridges", "ridge_width"), partial(judge_value, value=_share)),
-    "gross_1n": partial(judge_value, value=partial(_one_newton, name="gross_area", scale=1e6)),
-    "depth_1n": partial(judge_value, value=partial(_one_newton, name="indentation", scale=1e3)),
-    "area_power": partial(_area_form, least=LEAST, form=rules.power, other=rules.line),
+    **dict.fromkeys(("share_db1", "share_db2", "ridges", "ridge_width"), partial(rules.judge_value, value=_share)),
+    "gross_1n": partial(rules.judge_value, value=partial(_one_newton, name="gross_area", scale=1e6)),
+    "depth_1n": partial(rules.judge_value, value=partial(_one_newton, name="indentation", scale=1e3)),
+    "area_power": partial(_area_form, least=rules.LEAST, form=rules.power, other=rules.line),
     "area_linear": partial(_area_form, least=0.0, form=rules.line, other=rules.power),
-    "area_load": partial(judge_holds, values=_grow, holds=lambda rise: rise > 0),
+    "area_load": partial(rules.judge_holds, values=_grow, holds=lambda rise: rise > 0),
     "area_before": partial(
-        judge_holds,
+        rules.judge_holds,
         values=partial(_apparent, after=("rest", HIGH), before=("rest", 0.0)),
         holds=lambda change: np.abs(change) < CHANGED,
     ),
     "area_after": partial(
-        judge_holds, values=partial(_apparent, after=("slip", HIGH), before=("slip", 0.0)), holds=_falls
+        rules.judge_holds, values=partial(_apparent, after=("slip", HIGH), before=("slip", 0.0)), holds=_falls
     ),
     **dict.fromkeys(("area_shear", "apparent_sliding"), _SHRINKS),
-    "real_sliding": partial(judge_holds, values=_length, holds=lambda change: change > 0),
-    "real_shear": partial(judge_holds, values=_length, holds=lambda change: change < 0),
-    "stuck_share": partial(judge_near, value=_off_line),
+    "real_sliding": partial(rules.judge_holds, values=_length, holds=lambda change: change > 0),
+    "real_shear": partial(rules.judge_holds, values=_length, holds=lambda change: change < 0),
+    "stuck_share": partial(rules.judge_near, value=_off_line),
     "stuck_load": partial(
-        judge_holds, values=lambda of: -slopes(of, _half_stuck(of)), holds=lambda found: np.abs(found + 1) <= EXPONENT
+        rules.judge_holds,
+        values=lambda of: -rules.slopes(of, _half_stuck(of)),
+        holds=lambda found: np.abs(found + 1) <= EXPONENT,
     ),
     "stuck_wet": _stuck_wet,
     "time": _time,

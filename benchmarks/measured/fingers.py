@@ -2,7 +2,7 @@
 
 A finger slides without voltage and then under 200 V, which falls in sliding, at each of :data:`FORCES` on two meshes.
 It is also pressed under voltage and, where rows ask for it, softened, held and lifted. Whole fingers are sums of
-slices. Rows share the functions at the end.
+slices.
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -15,7 +15,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmarks.measured import rules
 from benchmarks.measured.findings import Finding
 from benchmarks.runs import Run, Unfinished
 from fingerpad.scene import Scene, SceneError, with_values
@@ -29,7 +28,6 @@ from variational.state import ContactState
 Array = NDArray[np.float64]
 NAMES = ("fitted", "moist", "held", "paper")
 FORCES = (5.0, 20.0, 75.0, 150.0)  # N/m
-LEAST, ONE = 0.5, 1.0  # N: least force of several sources, where shares are compared, and of fitted numbers
 FORCE = 75.0  # N/m, of what is run at one force
 VOLTAGES = (0.0, 50.0, 100.0, 150.0, 200.0)
 HIGH = VOLTAGES[-1]
@@ -201,46 +199,3 @@ def fingers(names: Iterable[str], out: Path) -> dict[str, Finger]:
                 runs[kind] = Run(scene, out)
         found[name] = Finger(next(iter(every.values())), runs)
     return found
-
-
-# -- numbers and verdicts that rows share ----------------------------------------------------------------------
-def both(finger: Finger, value: Callable[[Finger], Any]) -> tuple[Any, float]:
-    """Return a number or an array of a finger, and its largest difference from that of the coarser mesh."""
-    fine, coarse = np.asarray(value(finger), dtype=float), np.asarray(value(finger.coarse), dtype=float)
-    if fine.shape != coarse.shape:  # forces (N) that the traces of one mesh alone reach
-        fine, coarse = (each[: min(len(fine), len(coarse))] for each in (fine, coarse))
-    return fine, float(np.abs(fine - coarse).max())
-
-
-def judge_value(case: Case, value: Callable[[Finger], Any]) -> Row:
-    """Judge a number, or the range of several, by the rule of its row."""
-    found, error = both(case.finger, value)
-    low, high = float(found.min()), float(found.max())
-    return {"value": low, "low": low, "high": high, "error": error}, rules.by_rule(case.row, low, high)
-
-
-def judge_near(case: Case, value: Callable[[Finger], Any]) -> Row:
-    """Judge a number by its distance from the measured one: 0.1 for a hit, 0.2 for a part."""
-    found, error = both(case.finger, value)
-    measured = 0.0 if isinstance(case.row.value, str) else case.row.bounds[0]
-    return {"value": float(found), "error": error}, rules.by_bar(abs(float(found) - measured), 0.1, 0.2)
-
-
-def judge_holds(case: Case, values: Callable[[Finger], Array], holds: Callable[[Array], NDArray[np.bool_]]) -> Row:
-    """Judge at how many forces a statement on numbers holds."""
-    found, error = both(case.finger, values)
-    where = holds(found)
-    numbers = {"low": found.min(), "high": found.max(), "error": error, "holds": where.sum(), "loads": where.size}
-    return numbers, rules.by_share(float(where.mean()))
-
-
-def both_of(case: Case, other: str, value: Callable[[Finger, Finger], Any]) -> tuple[Any, float]:
-    """Return what follows from two fingers, and its difference from that of the coarser meshes."""
-    two = case.finger, case.every[other]
-    found, coarse = np.asarray(value(*two)), np.asarray(value(*(each.coarse for each in two)))
-    return found, float(np.abs(found - coarse).max())
-
-
-def slopes(finger: Finger, values: Array) -> Array:
-    """Return the exponent of values over the force, between neighbouring forces."""
-    return np.diff(np.log(values)) / np.diff(np.log(finger.forces))

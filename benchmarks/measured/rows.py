@@ -12,24 +12,7 @@ import numpy as np
 
 from benchmarks import viscosity
 from benchmarks.measured import contact, drives, rules
-from benchmarks.measured.fingers import (
-    HIGH,
-    LEAST,
-    ONE,
-    VOLTAGES,
-    Array,
-    Case,
-    Computation,
-    Finger,
-    Row,
-    adheres,
-    both,
-    both_of,
-    judge_holds,
-    judge_near,
-    judge_value,
-    slopes,
-)
+from benchmarks.measured.fingers import HIGH, VOLTAGES, Array, Case, Computation, Finger, Row, adheres
 from benchmarks.measured.rules import EXPONENT, RATIO, SIMILAR, by_factor, by_form, by_share
 from variational.attraction.dielectric import VACUUM_PERMITTIVITY
 from variational.state import ContactState
@@ -41,12 +24,12 @@ AMPLITUDES = ((100.0, 150.0), (50.0, 100.0))
 # -- friction --------------------------------------------------------------------------------------------------
 def _mu(finger: Finger) -> float:
     """Return the friction coefficient of the whole finger without voltage under 1 N."""
-    return finger.at(finger.slip(), "mu_app", ONE)
+    return finger.at(finger.slip(), "mu_app", rules.ONE)
 
 
 def _mus(finger: Finger) -> tuple[Array, Array]:
     """Return forces (N) of several sources and the friction coefficient at each."""
-    return finger.sums(finger.slip(), "mu_app", LEAST)
+    return finger.sums(finger.slip(), "mu_app", rules.LEAST)
 
 
 def _exponent(finger: Finger) -> float:
@@ -55,7 +38,7 @@ def _exponent(finger: Finger) -> float:
 
 def _over_load(case: Case, judge: Callable[[Case, Array], str]) -> Row:
     """Judge the friction coefficients at all forces per length."""
-    mu, error = both(case.finger, lambda of: of.mu)
+    mu, error = rules.both(case.finger, lambda of: of.mu)
     numbers = {"factor": mu.max() / mu.min(), "first": mu[0], "last": mu[-1], "error": error}
     return numbers | {"least": case.finger.forces[0], "most": case.finger.forces[-1]}, judge(case, mu)
 
@@ -79,7 +62,7 @@ def _speed(case: Case, wanted: bool) -> Row:
 
 def _ratio(case: Case) -> Row:
     """Judge the friction coefficient over that of a dry finger, at 1 N."""
-    found, error = both_of(case, "fitted", lambda finger, dry: _mu(finger) / _mu(dry))
+    found, error = rules.both_of(case, "fitted", lambda finger, dry: _mu(finger) / _mu(dry))
     return {"value": float(found), "error": error}, rules.by_rule(case.row, float(found), float(found))
 
 
@@ -88,7 +71,7 @@ def _stiffness(finger: Finger) -> Array:
     firsts = [
         [finger.path(f"slide {f:g}", "press")[-1], finger.path(f"slide {f:g}", "slip 0")[0]] for f in finger.forces
     ]
-    return slopes(finger, np.array([(two.f_t - one.f_t) / (two.bone_x - one.bone_x) for one, two in firsts]))
+    return rules.slopes(finger, np.array([(two.f_t - one.f_t) / (two.bone_x - one.bone_x) for one, two in firsts]))
 
 
 def _way(finger: Finger) -> Array:
@@ -112,7 +95,7 @@ def exponents(values: Array, voltages: Sequence[float]) -> Array:
 
 def _power(case: Case, values: Callable[[Finger], Array], ranges: Sequence[Sequence[float]]) -> Row:
     """Judge whether a rise is as the square of the voltage, at each force and in each of the ranges (V)."""
-    found, error = both(case.finger, lambda of: [exponents(values(of), voltages) for voltages in ranges])
+    found, error = rules.both(case.finger, lambda of: [exponents(values(of), voltages) for voltages in ranges])
     near = (np.abs(found - case.row.bounds[0]) <= EXPONENT).all(axis=0)
     numbers = {"holds": near.sum(), "loads": near.size, "error": error, "low": found[0].min(), "high": found[0].max()}
     return numbers | {"other_low": found[-1].min(), "other_high": found[-1].max()}, by_share(float(near.mean()))
@@ -195,25 +178,25 @@ _FACTOR = partial(_over_load, judge=lambda case, mu: rules.by_rule(case.row, _fa
 _LESS = partial(_over_load, judge=lambda case, mu: by_share(float(1 - mu[-1] / mu[0] > SIMILAR)))
 ROWS: dict[str, Computation] = {
     **contact.ROWS,
-    "friction_input": partial(judge_value, value=lambda of: of.mu),
-    "friction_wet": partial(judge_value, value=_mu),
-    "friction_glass": partial(judge_value, value=lambda of: _mus(of)[1]),
+    "friction_input": partial(rules.judge_value, value=lambda of: of.mu),
+    "friction_wet": partial(rules.judge_value, value=_mu),
+    "friction_glass": partial(rules.judge_value, value=lambda of: _mus(of)[1]),
     "friction_power": _power_law,
     **dict.fromkeys(("friction_load", "friction_savescu"), _SAME),
     "friction_occluded": _FACTOR,
     "friction_acrylic": _LESS,
-    "friction_seo": partial(judge_near, value=_exponent),
+    "friction_seo": partial(rules.judge_near, value=_exponent),
     "friction_speed": partial(_speed, wanted=True),
     "friction_no_speed": partial(_speed, wanted=False),
     **dict.fromkeys(("friction_humid", "friction_moist_palm", "friction_time"), _ratio),
-    "stiffness_shear": partial(judge_holds, values=_stiffness, holds=lambda found: np.abs(found - 1) <= EXPONENT),
-    "delay_way": partial(judge_value, value=_way),
+    "stiffness_shear": partial(rules.judge_holds, values=_stiffness, holds=lambda found: np.abs(found - 1) <= EXPONENT),
+    "delay_way": partial(rules.judge_value, value=_way),
     **dict.fromkeys(("adhesion", "adhesion_people"), _pull_off),
     "friction_voltage": partial(_power, values=_friction, ranges=(VOLTAGES[1:],)),
     "friction_range": partial(_power, values=_friction, ranges=AMPLITUDES),
     "real_area": partial(_power, values=_asperities, ranges=AMPLITUDES),
-    "friction_slip": partial(judge_holds, values=_rises, holds=lambda rise: rise > 0),
-    "gap": partial(judge_value, value=_gaps),
+    "friction_slip": partial(rules.judge_holds, values=_rises, holds=lambda rise: rise > 0),
+    "gap": partial(rules.judge_value, value=_gaps),
     "gap_sliding": _impedance,
     **drives.ROWS,
 }

@@ -5,15 +5,17 @@ parameters.
 """
 
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
 from benchmarks.measured.findings import Finding
+from benchmarks.measured.fingers import Case, Finger, Row
 
 HIT, PART, MISS, OPEN = "hit", "partly", "miss", "not computed"
+LEAST, ONE = 0.5, 1.0  # N: least force of several sources, where shares are compared, and of fitted numbers
 EXPONENT = 0.25  # from the measured exponent: what 10 % of scatter makes of a factor of 2 in voltage
 RATIO, VALUE = 1.25, 2.0  # largest factors of a ratio that is hit, and of a number that is met partly
 MISFIT = 0.1  # rms of a fitted curve
@@ -137,3 +139,46 @@ def scale(curve: Array, y: Array) -> float:
 def _least(rest: Callable[[float], float], form: Form) -> Fit:
     found = minimize_scalar(rest, bounds=(form.low, form.high), method="bounded", options={"xatol": 1e-9})
     return Fit(float(found.x), float(found.fun))
+
+
+# -- numbers and verdicts that rows share ----------------------------------------------------------------------
+def both(finger: Finger, value: Callable[[Finger], Any]) -> tuple[Any, float]:
+    """Return a number or an array of a finger, and its largest difference from that of the coarser mesh."""
+    fine, coarse = np.asarray(value(finger), dtype=float), np.asarray(value(finger.coarse), dtype=float)
+    if fine.shape != coarse.shape:  # forces (N) that the traces of one mesh alone reach
+        fine, coarse = (each[: min(len(fine), len(coarse))] for each in (fine, coarse))
+    return fine, float(np.abs(fine - coarse).max())
+
+
+def judge_value(case: Case, value: Callable[[Finger], Any]) -> Row:
+    """Judge a number, or the range of several, by the rule of its row."""
+    found, error = both(case.finger, value)
+    low, high = float(found.min()), float(found.max())
+    return {"value": low, "low": low, "high": high, "error": error}, by_rule(case.row, low, high)
+
+
+def judge_near(case: Case, value: Callable[[Finger], Any]) -> Row:
+    """Judge a number by its distance from the measured one: 0.1 for a hit, 0.2 for a part."""
+    found, error = both(case.finger, value)
+    measured = 0.0 if isinstance(case.row.value, str) else case.row.bounds[0]
+    return {"value": float(found), "error": error}, by_bar(abs(float(found) - measured), 0.1, 0.2)
+
+
+def judge_holds(case: Case, values: Callable[[Finger], Array], holds: Callable[[Array], NDArray[np.bool_]]) -> Row:
+    """Judge at how many forces a statement on numbers holds."""
+    found, error = both(case.finger, values)
+    where = holds(found)
+    numbers = {"low": found.min(), "high": found.max(), "error": error, "holds": where.sum(), "loads": where.size}
+    return numbers, by_share(float(where.mean()))
+
+
+def both_of(case: Case, other: str, value: Callable[[Finger, Finger], Any]) -> tuple[Any, float]:
+    """Return what follows from two fingers, and its difference from that of the coarser meshes."""
+    two = case.finger, case.every[other]
+    found, coarse = np.asarray(value(*two)), np.asarray(value(*(each.coarse for each in two)))
+    return found, float(np.abs(found - coarse).max())
+
+
+def slopes(finger: Finger, values: Array) -> Array:
+    """Return the exponent of values over the force, between neighbouring forces."""
+    return np.diff(np.log(values)) / np.diff(np.log(finger.forces))
