@@ -200,6 +200,8 @@ ROWS = ["0.2,0,0.3", "0.4,0,0.3", "0.2,150,0.5", "0.4,150,0.45"]
         (HEAD.replace(" (V)", ""), ROWS, "--fit friction", "has 'voltage' without a unit"),
         (HEAD + ",room", [f"{row},21" for row in ROWS], "--fit friction", "the column 'room', whose meaning is not"),
         (HEAD, ROWS, "", "fit has no key"),
+        (HEAD, ROWS, "--fit friction friction", "fit has friction twice"),
+        (HEAD, ROWS, "--fit roughness", "fit has roughness; it must be a number of the finger"),
         (HEAD, ROWS, "--fit friction.tau_0", "friction.tau_0 is not a key of friction with the law Coulomb"),
         (HEAD, ROWS, "--fit rughness.h_rms", "did you mean roughness"),
         (HEAD, ROWS, "--fit voltage", "fit has voltage; it must be a number of the finger"),

@@ -155,9 +155,7 @@ ROWS: dict[str, Computation] = {
         values=partial(_apparent, after=("rest", HIGH), before=("rest", 0.0)),
         holds=lambda change: np.abs(change) < CHANGED,
     ),
-    "area_after": partial(
-        rules.judge_holds, values=partial(_apparent, after=("slip", HIGH), before=("slip", 0.0)), holds=_falls
-    ),
+    "area_after": partial(_FALLS, values=partial(_apparent, after=("slip", HIGH), before=("slip", 0.0))),
     **dict.fromkeys(("area_shear", "apparent_sliding"), _SHRINKS),
     "real_sliding": partial(rules.judge_holds, values=_length, holds=lambda change: change > 0),
     "real_shear": partial(rules.judge_holds, values=_length, holds=lambda change: change < 0),

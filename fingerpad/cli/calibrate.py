@@ -44,7 +44,8 @@ def main(argv: Sequence[str]) -> int:
                 hold_out=held, full=0 if args.no_full else 3, out=args.out, jobs=args.jobs, quiet=args.quiet,
             )  # fmt: skip
     except (KeyboardInterrupt, SystemExit):  # of signals
-        print(f"fingerpad: stopped; full runs are kept in {args.out}, and the same command goes on", file=sys.stderr)
+        kept = "" if args.no_full else f"; full runs are kept in {args.out}, and the same command goes on"
+        print(f"fingerpad: stopped{kept}", file=sys.stderr)
         raise
     echo(f"{found}\n\nWritten: {args.out / 'scene.toml'}, rows.csv, report.html")
     return 1 if found.failures else 0

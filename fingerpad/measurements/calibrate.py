@@ -8,6 +8,7 @@ friction law without memory is fitted in place of the scene's. Full runs at some
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import closing
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -25,12 +26,14 @@ from fingerpad.reduced.cylinders import over_forces
 from fingerpad.report import calibration_page
 from fingerpad.results.files import below, check_folder
 from fingerpad.results.result import Result
+from fingerpad.results.terminal import Console
 from fingerpad.runs import batch
 from fingerpad.runs.solve import checked
 from fingerpad.scene import Scene, value_of, with_values
 from fingerpad.scene.keys import by_name
 from fingerpad.scene.law_keys import parameters
 from fingerpad.scene.messages import SceneError, clip, counted, show
+from fingerpad.startup import MPI
 from variational.contact.friction import Derjaguin
 
 Array = NDArray[np.float64]
@@ -113,7 +116,9 @@ def calibrate(
         check_folder(Path(out), "out")
     seen = observations(table, columns)
     held = _held(seen, hold_out or {})
-    found = _Problem(checked(scene).resolved(), tuple(fit), seen, held, spread).calibration(evidence)
+    with closing(Console(MPI.COMM_SELF, lines=False, bar=not quiet)) as console:
+        problem = _Problem(checked(scene).resolved(), tuple(fit), seen, held, spread, console)
+        found = problem.calibration(evidence)
     if out is None:
         return found
     found = with_full_runs(found, full, Path(out), jobs, quiet)
@@ -140,14 +145,18 @@ class _Problem:
     """A table, keys of a scene and rows that are held out."""
 
     def __init__(
-        self, scene: Scene, keys: tuple[str, ...], seen: Observations, held: NDArray[np.bool_], spread: float | None
-    ) -> None:
+        self, scene: Scene, keys: tuple[str, ...], seen: Observations, held: NDArray[np.bool_], spread: float | None,
+        console: Console,
+    ) -> None:  # fmt: skip
         """Refuse what cannot be fitted whatever the values."""
+        self.console = console
         self.scene, self.keys, self.seen, self.held = scene, keys, seen, held
         self.rows, self.fitted, name = seen.rows, seen.rows[~held], seen.name
         self.names = list(dict.fromkeys(self.fitted.participant))
         if not keys:
             raise SceneError("fit has no key; give keys of the scene, as friction and roughness.h_rms")
+        if twice := [key for key in keys if keys.count(key) > 1]:
+            raise SceneError(f"fit has {clip(twice[0])} twice; give each key once")
         if len(self.fitted) < len(keys):
             rows = counted(len(self.fitted), "value")
             raise SceneError(f"{name} has {rows} to fit and fit has {len(keys)} keys; give at most as many keys")
@@ -194,6 +203,7 @@ class _Problem:
 
     def calibration(self, evidence: bool) -> Calibration:
         """Return what the table says."""
+        self.console.phase(f"fit of {counted(len(self.fitted), 'value')}")
         form, best = self.fit(self.scene, self.keys)
         if form.exponents:  # once more about the press of the fitted finger
             form, best = self.fit(form.at(best.theta), self.keys, form.exponents)
@@ -233,8 +243,9 @@ class _Problem:
     # -- evidence ----------------------------------------------------------------------------------------------
     def _evidence(self, scene: Scene, best: Estimate, known: Powers) -> pd.DataFrame:
         """Return how well each closure and each friction law describes the rows, with its keys fitted."""
-        found = []
-        for kind, name, other, keys in (*self._closures(scene), *self._friction_laws(scene)):
+        found, laws = [], (*self._closures(scene), *self._friction_laws(scene))
+        for k, (kind, name, other, keys) in enumerate(laws):
+            self.console.phase(f"{kind}: {name}", k / len(laws))
             try:
                 fitted = best if other == scene and keys == self.keys else self.fit(other, keys, known)[1]
                 values = zip(keys, np.exp(fitted.theta), strict=True)
@@ -275,7 +286,8 @@ def _value_of(scene: Scene, name: str) -> float:
     """Return the value of a key that is fitted; refuse one that cannot be."""
     key = _key(name)
     if key is None or key.limits is None or name.partition(".")[0] in ("force", "f_ext", "voltage", "mesh", "numerics"):
-        with_values(scene, {name: 1.0})  # refuses a key that is not there
+        if not any(each.startswith(f"{name}.") for each in by_name(Scene)):  # not a table
+            with_values(scene, {name: 1.0})  # refuses a key that is not there
         raise SceneError(f"fit has {clip(name)}; it must be a number of the finger, its friction or the screen")
     try:
         value = value_of(scene, name)

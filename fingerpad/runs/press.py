@@ -37,7 +37,9 @@ def press(scene: Scene | None = None) -> Press:
     Raises:
         SceneError: the finger has no closed form, cannot be meshed, or its press fails.
     """
-    scene = Scene() if scene is None else scene
+    from fingerpad.runs.solve import checked  # which imports this module
+
+    scene = checked(scene)
     check_supported(scene, "cylinders")
     found = known(scene)
     if found is None:
