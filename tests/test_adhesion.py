@@ -1,6 +1,6 @@
 """Adhesion without a voltage: its law, its weak form, pull-off by a closed form, energy, scenes and refusals."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from scipy.integrate import trapezoid
 
 import fingerpad as fp
 from fingerpad.scene import SceneError
-from fingerpad.slices.pull_off import PULL_OFF
+from fingerpad.slices.pull_off import PULL_OFF, with_pull_off
 from geometry import tags
 from geometry.bodies import block
 from geometry.mesh import load
@@ -102,6 +102,18 @@ def test_lifted_finger():
     again = fp.Result.from_xarray(result.to_xarray())
     assert [s.f_adhesion for s in again.steps] == [s.f_adhesion for s in result.steps]
     assert fp.Scene(**scene.parameters()).adhesion == scene.adhesion
+
+
+def test_pull_off_of_a_sphere():
+    """Of slices that pull evenly: with their scale cos φ the sum is R (φ + sin φ cos φ) at the deepest one."""
+    radius, deep, pull = 14e-3, 2e-3, 3.0
+    scene = fp.Scene(slices={"radius": radius, "length": 2 * radius, "shape": "ellipsoid"})
+    result = fp.run(model="cylinders")
+    path = [(deep + 1e-9, 1.0), (deep, -pull), (1e-9, -pull), (0.0, 0.0)]
+    steps = tuple(replace(result.full_slip, bone_height=-depth, f_ext=force) for depth, force in path)
+    found, phi = with_pull_off(replace(result, scene=scene, steps=steps)), np.arccos(1 - deep / radius)
+    expected = -pull * radius * (phi + np.sin(phi) * np.cos(phi))
+    assert found.record[PULL_OFF] == pytest.approx({"f_ext": -pull, "finger": expected}, rel=5e-3)
 
 
 def test_scene():

@@ -7,6 +7,7 @@ import pytest
 from scipy import stats
 
 import fingerpad as fp
+from benchmarks.measured import findings
 from fingerpad.reduced import people_band, press
 from fingerpad.reduced.closure_band import closures, friction
 from fingerpad.reduced.cylinders import over_forces
@@ -47,6 +48,15 @@ def test_factors_have_the_spreads():
         assert np.median(factors) == pytest.approx(1.0, abs=5 * 1.25 * spread.cv / 20_000**0.5)
         assert factors.std() / factors.mean() == pytest.approx(spread.cv, rel=0.06)  # cut off at three deviations
         assert np.quantile(factors, [0.05, 0.95]) == pytest.approx(quantiles(name, [0.05, 0.95]), rel=0.02)
+
+
+def test_spreads_are_those_of_the_findings():
+    """The middle of friction's; a modulus goes with the square of a speed. To the two digits that they are given in."""
+    rows, _ = findings.read()
+    speed, ridges = rows["stiffness_people"], rows["ridges_women"]
+    assert SPREADS["friction"].cv == pytest.approx(np.mean(rows["friction_between"].bounds))
+    assert SPREADS["stiffness"].cv == pytest.approx(2 * speed.spread / speed.bounds[0], abs=0.006)
+    assert SPREADS["size"].cv == pytest.approx(ridges.spread / ridges.bounds[0], abs=0.006)
 
 
 @pytest.mark.parametrize("finger", FINGERS)

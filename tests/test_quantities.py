@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 
 import pytest
 import xarray
@@ -119,3 +120,14 @@ def test_output_that_cannot_be_computed_is_a_note(compute):
 def test_units_of_outputs_are_turned_into_si(unit, found):
     output = fp.Output("own", unit)
     assert (output.si, output.scale) == found
+
+
+def test_outputs_of_the_package():
+    """A point in four sticks; the shear stress is the friction force over the length in contact, to either side."""
+    slip = fp.run(model="cylinders").full_slip
+    found = {each.name: each.compute for each in quantities.OUTPUTS}
+    assert found["stuck_share"](replace(slip, slipping=0.75)) == 0.25
+    for sign in (1, -1):
+        state = replace(slip, f_t=sign * slip.f_t)
+        assert found["shear_stress"](state) == pytest.approx(0.25 * slip.f_contact / slip.contact_length, rel=1e-6)
+    assert found["shear_stress"](replace(slip, contact_length=0.0)) == 0.0

@@ -56,6 +56,8 @@ def test_paraboloid_on_an_elastic_foundation(depth):
     root = np.sqrt(R_X * R_Z)
     assert total.totals["f_ext"] == pytest.approx(np.pi * FOUNDATION * root * depth**2, rel=EXACT)
     assert total.totals["gross_area"] == pytest.approx(2 * np.pi * root * depth, rel=EXACT)
+    assert total.values["real_over_gross"] == pytest.approx(0.2, rel=EXACT)
+    assert total.values["shear_stress"] == pytest.approx(FRICTION * FOUNDATION * depth / 2 / 0.2, rel=EXACT)
     assert at_force(profile(Slices()), foundation(), total.totals["f_ext"], 48).delta == pytest.approx(depth, rel=EXACT)
 
 

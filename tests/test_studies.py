@@ -58,6 +58,13 @@ def test_contradictions_are_named_once():
         ("spread = 0.07\n", "", "finding share_db2 lacks a spread"),
         ('source = "maltoni"', 'source = "nobody"', "finding ridge_width has the source 'nobody'"),
         ('rule = "form"', 'rule = "none"', "finding area_power lacks a rule and judges"),
+        ('rule = "bar"', 'rule = "trend"', "finding stuck_share lacks the words of its bar"),
+        ('why = "presets are fitted to nearly the same number on prints"\n', "", "finding ridge_width lacks a why"),
+        (
+            "[source.maltoni]",
+            '[source.idle]\nwords = ""\nlink = ""\n[source.maltoni]',
+            "no finding has the source 'idle'",
+        ),
     ],
 )
 def test_file_of_findings_is_refused(tmp_path, old, new, words):
@@ -75,6 +82,7 @@ def test_file_of_findings_is_refused(tmp_path, old, new, words):
         ("gross_1n", (100, 180), HIT),
         ("gross_1n", (60, 180), PART),
         ("friction_occluded", (4, 6.25), HIT),
+        ("friction_occluded", (4, 6.3), PART),
         ("skin_phase", (-60, -50), HIT),
         ("skin_phase", (50, 60), MISS),
         ("gap_sliding", (0, 3), MISS),
