@@ -199,7 +199,7 @@ def test_value_nobody_can_mean(key, value, meant):
 
 
 # -- arguments in Python -----------------------------------------------------------------------------------------
-@pytest.mark.parametrize("call", [fp.run, lambda scene: fp.sweep(scene, model="cylinders", voltage=[0.0])])
+@pytest.mark.parametrize("call", [fp.run, fp.press, lambda scene: fp.sweep(scene, model="cylinders", voltage=[0.0])])
 @pytest.mark.parametrize("scene", [{}, 0, {"f_ext": 5.0}, "scene.toml"])
 def test_what_is_no_scene_is_refused(call, scene):
     """Nothing that is false is the default scene."""

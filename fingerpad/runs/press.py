@@ -18,6 +18,7 @@ from fingerpad.model.simulation import Simulation
 from fingerpad.reduced.model import check_supported
 from fingerpad.reduced.press import FINE, FORCES, MESH, Press, file_of, keep, known
 from fingerpad.scene import Scene, SceneError
+from fingerpad.scene.messages import refuse_type
 from fingerpad.startup import MPI
 from geometry.parameters import MeshSize
 from geometry.profiles import GeometryError
@@ -37,9 +38,8 @@ def press(scene: Scene | None = None) -> Press:
     Raises:
         SceneError: the finger has no closed form, cannot be meshed, or its press fails.
     """
-    from fingerpad.runs.solve import checked  # which imports this module
-
-    scene = checked(scene)
+    refuse_type("scene", scene, Scene | None, "a Scene, and a file is read by Scene.load(path)")
+    scene = Scene() if scene is None else scene
     check_supported(scene, "cylinders")
     found = known(scene)
     if found is None:
