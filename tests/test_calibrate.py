@@ -84,6 +84,7 @@ def test_criterion_of_a_straight_line():
     residual = y - np.polyval(np.polyfit(x, y, 1), x)
     wanted = 9 * math.log(float(residual @ residual) / 9) + 9 * (1 + math.log(2 * math.pi)) + 6 * 9 / 5
     assert found.criterion == pytest.approx(wanted, abs=1e-3)
+    assert found.quantile == pytest.approx(2.365, abs=1e-3)  # Student's table, seven degrees of freedom
 
 
 # -- the closed form -------------------------------------------------------------------------------------------------
