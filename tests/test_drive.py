@@ -133,6 +133,11 @@ TABLE = {"frequency": [10.0, 1e3], "eps": [2e3, 1e3], "sigma": [1e-4, 1e-3]}
             "voltage.carrier.frequency is 1000000 Hz, 1e+04 periods in one",
         ),
         (FILE | {"carrier": {"frequency": 20.0, "modulation": 1.0}}, {}, "voltage.carrier.modulation is 1 and voltage"),
+        (
+            FILE | {"carrier": {"frequency": 60.0}},
+            {},
+            "voltage.carrier.frequency is 60 Hz and the record has",
+        ),
         (FILE | {"burst": {"on": 1, "off": 1}}, {}, "voltage.burst is given and voltage.waveform is 'file', which has"),
         (SINE | {"burst": {"on": 0, "off": 1}}, {}, "voltage.burst.on is 0; it must be at least 1"),
         (

@@ -234,6 +234,9 @@ def test_report_has_what_is_felt(run, tmp_path, size):
     """A raster with every spike below the pressure of the ridges, caution and table; it fits a laptop and a phone."""
     page, (width, height) = run_page.page(run), SIZES[size]
     assert 'href="#felt"' in page and "Thresholds are relative" in page
+    ridges = [dict(zip(state.ridges.number, state.ridges.p_c, strict=True)) for state in run.steps]
+    assert len({len(each) for each in ridges}) == 2, "the path goes on with more ridges"
+    assert all(f"ridge {j}" in page for each in ridges for j, p_c in each.items() if p_c > 0)
     program = """
     const marks = [...document.querySelectorAll("#felt [data-marks]")].map((g) => g.dataset.marks.split(" ").length);
     const root = document.documentElement;

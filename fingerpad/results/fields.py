@@ -95,8 +95,9 @@ class Fields:
             raise ImportError(f"to_pyvista needs pyvista, which is not installed; {how}", name="pyvista") from error
         grid = pyvista.UnstructuredGrid({_TRIANGLE: self.triangles}, _in_space(self.points))
         grid.point_data["displacement"] = _in_space(self.displacement)
-        tensors = {"stress": self.stress.reshape(-1, 9), "strain": self.strain.reshape(-1, 9)}
-        for name, values in {"sed": self.sed, **tensors, "layer": self.layer}.items():
+        cells: dict[str, NDArray[Any]] = {"sed": self.sed, "layer": self.layer}
+        cells |= {"stress": self.stress.reshape(-1, 9), "strain": self.strain.reshape(-1, 9)}
+        for name, values in cells.items():
             grid.cell_data[name] = values
         return grid
 

@@ -67,7 +67,7 @@ class CarriedWaveform(Waveform):
             )
         if step * frequency > 0.5:
             raise ValueError(
-                f"{given} and the file has times {step:.4g} s apart; they must be at most {0.5 / frequency:.4g} s "
+                f"{given} and the record has points {step:.4g} s apart; they must be at most {0.5 / frequency:.4g} s "
                 "apart, two in a period (Nyquist)"
             )
         if self.times is None and frequency <= (self.frequency or 0.0):
