@@ -30,6 +30,7 @@ The model leaves out that ridges in the middle bear more than those at the edge,
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -259,6 +260,9 @@ def _others(state: str, ridge: RidgeState) -> list[Caution]:
     return [Caution("other_states", text, ridge.others[0])]
 
 
+_profiles = lru_cache(maxsize=64)(Profiles)
+
+
 def tip_of(finger: Fingertip, lengths: Array, tips: float = 1.0) -> Tip:
     """Return the tips of ridges about the lengths (m) of their contact without voltage.
 
@@ -270,7 +274,7 @@ def tip_of(finger: Fingertip, lengths: Array, tips: float = 1.0) -> Tip:
     Raises:
         SceneError: a ridge has several crests, or one beside its middle.
     """
-    profiles = Profiles(finger)
+    profiles = _profiles(finger)
     lower = float(profiles.skin(0.0)) / finger.ridge_amplitude
     if lower > _FLAT:
         raise SceneError(
@@ -286,6 +290,6 @@ def tip_of(finger: Fingertip, lengths: Array, tips: float = 1.0) -> Tip:
 
 def tip_radius(finger: Fingertip) -> float:
     """Return the radius of curvature of a sinusoidal ridge's tip (m)."""
-    step, profiles = 1e-3 * finger.ridge_wavelength, Profiles(finger)
+    step, profiles = 1e-3 * finger.ridge_wavelength, _profiles(finger)
     low, high = (float(profiles.skin(s)) for s in (0.0, step))
     return step**2 / (2 * (high - low))

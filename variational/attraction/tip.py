@@ -29,7 +29,7 @@ from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.floating[Any]]
 _NODES, _WEIGHTS = (each / 2 for each in np.polynomial.legendre.leggauss(7))
-_CLOSE = 1e-12  # of a half-length, relative; the next step would be of its square
+_CLOSE = 1e-5  # of a half-length, relative; the next step would be of its cube
 _ITERATIONS = 60
 _LEAST_POWER = 1.05  # of a profile beyond its flank: its contact force has to grow
 
@@ -117,14 +117,18 @@ class Power(Tip):
         return np.asarray(np.asarray(f) / (self.depth * (a / self.half) ** self.power))
 
     def half_width(self, modulus: Array, f: Array, pull: Array) -> tuple[Array, Array]:
-        """Return the root by Newton's method in ln a, which is monotone: there the equation is concave."""
+        """Return the root by Halley's method in ln a, from the larger one of its two asymptotes."""
         p, grows = self.power, modulus * self.depth
         own, pulled = f / grows, pull * self.half / grows
         with np.errstate(divide="ignore"):
             y = np.maximum(np.log(own) / p, np.log(pulled) / (p - 1))
         for _ in range(_ITERATIONS):
             part = pulled * np.exp(y)
-            step = (p * y - np.log(part + own)) / (p - part / (part + own))
+            both = part + own
+            share = part / both
+            slope = p - share
+            step = (p * y - np.log(both)) / slope
+            step = step / (1 + step * share * (1 - share) / (2 * slope))
             y = y - step
             if np.all(abs(step) <= _CLOSE):
                 break
