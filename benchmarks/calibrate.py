@@ -20,7 +20,7 @@ import fingerpad as fp
 from benchmarks.harness import keep, kept, made, main, page, run
 from fingerpad.measurements import prediction
 from fingerpad.measurements.table import observations
-from fingerpad.runs.batch import key
+from fingerpad.runs import batch
 from fingerpad.slices.total import at_force, profile
 
 NOISE, TABLES, CHOICES, PEOPLE = 0.03, 100, 10, 10
@@ -132,7 +132,7 @@ def by_full_runs(args: argparse.Namespace) -> list[dict[str, Any]]:
         run(scenes, args, LIMIT)
         rng, rows, off = np.random.default_rng(seed), [], []
         for volts, scene in zip(FULL_VOLTAGES, scenes.values(), strict=True):
-            trace = fp.Result.load(args.out / key(scene)).finger.traces["full_slip"]
+            trace = fp.Result.load(args.out / batch.key(scene)).finger.traces["full_slip"]
             for force in FULL_FORCES:
                 f_t = at_force(profile(scene.slices), trace, force, scene.slices.count).totals["f_t"]
                 closed = {at: fp.run(at.replace(force=force, voltage=volts), model="cylinders") for at in (start, own)}

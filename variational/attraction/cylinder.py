@@ -14,15 +14,19 @@ doi 10.1088/0022-3727/41/15/155315). The gap at c is the range, and f is the ext
           + \frac{4 \sigma a}{\pi E^*} \left( \sqrt{m^2 - 1} \operatorname{arcosh} m - m \ln m \right), \qquad
           f = \frac{\pi E^* a^2}{4 R} - 2 \sigma a \sqrt{m^2 - 1}.
 
+The tip touches over :math:`a_1` without attraction, and its contact force goes with a power p of the length in contact
+(:mod:`~variational.attraction.tip`). So a and m both follow from :math:`x = a / a_1`, the one unknown:
+
+.. math:: 2 \sigma a_1 \sqrt{m^2 - 1} = f \left( x^p - 1 \right) / x .
+
 The screen bears what presses and what attracts, over the length in contact, and the microscale says how far apart the
 surfaces are under that pressure (Forsbach et al. 2023, Eqs. 3, 4 and 13):
 
 .. math:: 2 a p_c = f + 2 \sigma c, \qquad d_{eq} = d_{eq}(p_c).
 
-Without voltage this is Hertz's law. A tip that is no cylinder (:mod:`~variational.attraction.tip`) has its own force
-and gap in the place of those with R. The force f is given, and a follows from the second equation. E* may grow with
-p_c, as in a ridge that friction shears. The gap at c grows with m then, which leaves one m at each p_c, and one
-equation in p_c. It can have several roots: that of the highest pressure is the branch in contact, on which the loop
+Without voltage this is Hertz's law. A tip that is no cylinder has its own force and gap in the place of those with R. E*
+may grow with p_c, as in a ridge that friction shears. The gap at c grows with x, which leaves one x at each p_c, and
+one equation in p_c. It can have several roots: that of the highest pressure is the branch in contact, on which the loop
 over the scales contracts; others are unstable, or states of a ridge that has not jumped on the screen yet. Where the
 highest root vanishes the ridge is past its pull-off fold and there is none.
 """
@@ -206,15 +210,15 @@ class Cylinder:
             small = abs(step) <= _STEP + 4 * _ROUNDOFF / beyond  # the gap is a difference, good to 1e-16 / (m - 1)
             y = np.where(((after > low) & (after < high)) | small, after, (low + high) / 2)
             if small.all():
-                a, _, _, beyond, _ = at(y)
-                return a, beyond, y
-        none = abs(opening(y)[0]) > _NO_EDGE
-        if none.any():
-            k = int(np.argmax(none))
-            raise NoEquilibriumError(
-                f"no contact bears {loads.f[k]:g} N/m under an attraction of {sigma[k]:.3g} Pa; "
-                "try a smaller voltage or another force"
-            )
+                break
+        else:
+            none = abs(opening(y)[0]) > _NO_EDGE
+            if none.any():
+                k = int(np.argmax(none))
+                raise NoEquilibriumError(
+                    f"no contact bears {loads.f[k]:g} N/m under an attraction of {sigma[k]:.3g} Pa; "
+                    "try a smaller voltage or another force"
+                )
         a, _, _, beyond, _ = at(y)
         return a, beyond, y
 
