@@ -24,9 +24,9 @@ surfaces are under that pressure (Forsbach et al. 2023, Eqs. 3, 4 and 13):
 
 .. math:: 2 a p_c = f + 2 \sigma c, \qquad d_{eq} = d_{eq}(p_c).
 
-Without voltage this is Hertz's law. A tip that is no cylinder has its own force and gap in the place of those with R. E*
-may grow with p_c, as in a ridge that friction shears. The gap at c grows with x, which leaves one x at each p_c, and
-one equation in p_c. It can have several roots: that of the highest pressure is the branch in contact, on which the loop
+Without voltage this is Hertz's law. A tip that is no cylinder has its own force and gap in the place of those with R.
+E* may grow with p_c, as in a ridge that friction shears. The gap at c grows with x, which leaves one x at each p_c,
+and one equation in p_c. It can have several roots: that of the highest pressure is the branch in contact, on which the loop
 over the scales contracts; others are unstable, or states of a ridge that has not jumped on the screen yet. Where the
 highest root vanishes the ridge is past its pull-off fold and there is none.
 """
@@ -47,6 +47,7 @@ Voltage = float | Callable[[Array], Array]
 """A voltage U (V), or one of Eq. 3 by the air gap (m) where a drive loses a part of it that depends on the gap."""
 _PRESSURES = np.geomspace(10.0, 1e7, 181)  # Pa, among which roots are separated
 _LEAST, _START, _MOST = 4e-5, 1.7, 1e6  # of the root of m^2 - 1
+_WIDEST = 200.0  # ln x^p at most
 _NO_PULL = 1e-100  # Pa, in place of no attraction
 _ROUNDOFF = 2e-16  # relative
 _STEP = 1e-7  # of Newton's method, relative; the next one would be of its square
@@ -198,7 +199,7 @@ class Cylinder:
 
         def bound(root: float, power: Any) -> Array:
             """Return y near a value of the root: below it of the power p, above it of p - 1."""
-            return np.asarray(np.log(np.expm1(np.log1p(root / scale) / power)))
+            return np.asarray(np.log(np.expm1(np.minimum(np.log1p(root / scale) / power, _WIDEST / p))))
 
         low, high = bound(_LEAST, p), bound(_MOST, p - 1)
         y = bound(_START, p - 0.5) if near is None else near
