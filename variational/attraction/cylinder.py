@@ -26,9 +26,9 @@ surfaces are under that pressure (Forsbach et al. 2023, Eqs. 3, 4 and 13):
 
 Without voltage this is Hertz's law. A tip that is no cylinder has its own force and gap in the place of those with R.
 E* may grow with p_c, as in a ridge that friction shears. The gap at c grows with x, which leaves one x at each p_c,
-and one equation in p_c. It can have several roots: that of the highest pressure is the branch in contact, on which the loop
-over the scales contracts; others are unstable, or states of a ridge that has not jumped on the screen yet. Where the
-highest root vanishes the ridge is past its pull-off fold and there is none.
+and one equation in p_c. It can have several roots: that of the highest pressure is the branch in contact, on which the
+loop over the scales contracts; others are unstable, or states of a ridge that has not jumped on the screen yet. Where
+the highest root vanishes the ridge is past its pull-off fold and there is none.
 """
 
 from collections.abc import Callable, Sequence
@@ -50,6 +50,7 @@ _LEAST, _START, _MOST = 4e-5, 1.7, 1e6  # of the root of m^2 - 1
 _WIDEST = 200.0  # ln x^p at most
 _NO_PULL = 1e-100  # Pa, in place of no attraction
 _ROUNDOFF = 2e-16  # relative
+_ROUGH = 1e-3  # of Newton's method where only the sign of an excess is looked for
 _STEP = 1e-7  # of Newton's method, relative; the next one would be of its square
 _TOLERANCE = 1e-12  # of the pressure, relative
 _ITERATIONS = 100  # of a root, at most; bisection to roundoff takes 60
@@ -169,7 +170,8 @@ class Cylinder:
             loads: of each ridge.
             sigma: strength of the attraction (Pa).
             reach: of the attraction (m).
-            near: values of ln(a / a_1 - 1) to start at, of edges that are known to be there.
+            near: values of ln(a / a_1 - 1) to start at, of edges that are known to be there; without them the gap is
+                the reach to a millionth.
 
         Raises:
             NoEquilibriumError: the gap at c is smaller up to the largest m, or larger from the least m on.
@@ -202,13 +204,13 @@ class Cylinder:
             return np.asarray(np.log(np.expm1(np.minimum(np.log1p(root / scale) / power, _WIDEST / p))))
 
         low, high = bound(_LEAST, p), bound(_MOST, p - 1)
-        y = bound(_START, p - 0.5) if near is None else near
+        y, close = (bound(_START, p - 0.5), _ROUGH) if near is None else (near, _STEP)
         for _ in range(_ITERATIONS):
             value, slope, beyond = opening(y)
             below, step = value < 0, value / slope
             low, high = np.where(below, y, low), np.where(below, high, y)
             after = y - step
-            small = abs(step) <= _STEP + 4 * _ROUNDOFF / beyond  # the gap is a difference, good to 1e-16 / (m - 1)
+            small = abs(step) <= close + 4 * _ROUNDOFF / beyond  # the gap is a difference, good to 1e-16 / (m - 1)
             y = np.where(((after > low) & (after < high)) | small, after, (low + high) / 2)
             if small.all():
                 break
