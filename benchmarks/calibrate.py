@@ -33,7 +33,7 @@ TRUTH = {  # of the five keys
 }  # fmt: skip
 LAWS = {"Coulomb": {"friction": 0.3}, "shear stress": {"friction": {"law": "Derjaguin", "mu_f": 0.0, "tau_0": 9e3}}}
 MADE = ((0.2, 3.4e-6), (0.25, 2.9e-6), (0.32, 4.2e-6))  # friction and roughness.h_rms of the tables by full runs
-FULL_FORCES, FULL_VOLTAGES, MESH = (0.1, 0.2, 0.4), (0.0, 100.0, 200.0), {"contact": 20e-6, "receptor": 100e-6}
+FULL_FORCES, FULL_VOLTAGES, MESH = (0.1, 0.2, 0.4), (100.0, 200.0), {"contact": 20e-6, "receptor": 100e-6}
 LIMIT = 3600.0  # s of processor time of a full run
 SPREADS = {"friction": 0.4, "roughness.h_rms": 0.15}  # between people, of logarithms
 
@@ -122,7 +122,8 @@ def held_out() -> dict[str, Any]:
 def by_full_runs(args: argparse.Namespace) -> list[dict[str, Any]]:
     """Return regions from tables of friction forces by full runs, with noise, and how far the closed form is off.
 
-    The spread of a row has the noise and the known error of the closed form at the scene that a fit starts from.
+    Without a voltage Coulomb's friction is the coefficient times the force in any model. The spread of a row has the
+    noise and the known error of the closed form at the scene that a fit starts from.
     """
     found, start = [], fp.Scene(force=FULL_FORCES[-1])
     for seed, (friction, h_rms) in enumerate(MADE):
@@ -130,7 +131,8 @@ def by_full_runs(args: argparse.Namespace) -> list[dict[str, Any]]:
         own = _scene(truth, start.replace(mesh=MESH))
         scenes = {f"table {seed}, {volts:g} V": own.replace(voltage=volts) for volts in FULL_VOLTAGES}
         run(scenes, args, LIMIT)
-        rng, rows, off = np.random.default_rng(seed), [], []
+        rng, off = np.random.default_rng(seed), []
+        made = [(force, 0.0, friction * force, 0.0) for force in FULL_FORCES]
         for volts, scene in zip(FULL_VOLTAGES, scenes.values(), strict=True):
             trace = fp.Result.load(args.out / batch.key(scene)).finger.traces["full_slip"]
             for force in FULL_FORCES:
@@ -138,8 +140,8 @@ def by_full_runs(args: argparse.Namespace) -> list[dict[str, Any]]:
                 closed = {at: fp.run(at.replace(force=force, voltage=volts), model="cylinders") for at in (start, own)}
                 off.append(closed[own].finger.full_slip.f_t / f_t - 1)
                 head = closed[start].headline
-                spread = np.hypot(NOISE, head.error / head.value)
-                rows.append((force, volts, f_t * np.exp(NOISE * rng.normal()), 100 * spread))
+                made.append((force, volts, f_t, head.error / head.value))
+        rows = [(*at, f_t * np.exp(NOISE * rng.normal()), 100 * np.hypot(NOISE, known)) for *at, f_t, known in made]
         heads = ["force (N)", "voltage (V)", "friction force (N)", "spread (%)"]
         values = fitted(pd.DataFrame(rows, columns=heads), start, truth, evidence=False).values
         inside = {name: bool(v.low <= truth[name] <= v.high) for name, v in values.iterrows()}

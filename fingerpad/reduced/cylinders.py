@@ -164,6 +164,7 @@ def over_forces(
     pressed: Sequence[ContactState] | Press = (),
     tips: float = 1.0,
     shear: float = SHEAR,
+    voltage: Sequence[float] | None = None,
 ) -> list[ContactState]:
     """Return a state of a scene under each of several external forces, computed together.
 
@@ -175,12 +176,13 @@ def over_forces(
             press.
         tips: radius of the ridges' tips over that of the scene; Hertz's length grows with its root.
         shear: in place of :data:`SHEAR`.
+        voltage: of each force (V), in place of the scene's.
 
     Raises:
         SceneError: as :func:`solve`, but for what is wrong with the other state alone.
     """
     check_supported(scene, Cylinders.name)
-    return [found for found, _ in _over_forces(scene, f_ext, state, pressed, tips, shear)]
+    return [found for found, _ in _over_forces(scene, f_ext, state, pressed, tips, shear, voltage)]
 
 
 def _over_forces(
@@ -190,6 +192,7 @@ def _over_forces(
     pressed: Sequence[ContactState] | Press = (),
     tips: float = 1.0,
     shear: float = SHEAR,
+    voltage: Sequence[float] | None = None,
 ) -> list[tuple[ContactState, RidgeState]]:
     """Return the states of :func:`over_forces`, and those of a ridge."""
     own, force, law = pressed or press.of(scene), np.array(f_ext), scene.friction_law()
@@ -199,7 +202,7 @@ def _over_forces(
     def solved(left: Any = 1.0) -> tuple[NDArray[Any], list[RidgeState]]:
         """Return how many ridges are in contact, and their states, with a part of the press's contact left."""
         ridges = own.ridge_count(f_ext, state, left) if isinstance(own, Press) else given
-        return ridges, _ridges(scene, state, force / ridges, left * length / ridges, tips, shear)
+        return ridges, _ridges(scene, state, force / ridges, left * length / ridges, tips, shear, voltage)
 
     left: Any = 1.0
     if isinstance(own, Press):
@@ -211,19 +214,22 @@ def _over_forces(
             left = own.left(law.limit, force, pulled, touching)
     ridges, found = solved(left)
     states = []
-    for each, count, ridge in zip(f_ext, ridges, found, strict=True):
+    volts = [scene.voltage] * len(found) if voltage is None else voltage
+    for each, count, ridge, own_volts in zip(f_ext, ridges, found, volts, strict=True):
         sums = {"f_contact": ridge.f_contact, "f_electrostatic": ridge.f_attraction, "contact_length": ridge.length}
         contact = {name: int(count) * value for name, value in sums.items()} | {"ridges_in_contact": int(count)}
-        under = scene.model_copy(update={"f_ext": float(each)})
+        under = scene.model_copy(update={"f_ext": float(each), "voltage": own_volts})
         states.append((reduced_state(under, contact, state == "full_slip"), ridge))
     return states
 
 
-def _ridges(scene: Scene, state: str, forces: Array, lengths: Array, tips: float, shear: float) -> list[RidgeState]:
+def _ridges(
+    scene: Scene, state: str, forces: Array, lengths: Array, tips: float, shear: float, volts: Sequence[float] | None
+) -> list[RidgeState]:
     """Return the states of ridges under external forces (N/m), with lengths in contact (m) without voltage."""
     tip, closure = tip_of(scene.geometry, lengths, tips), scene.closure()
     moduli = tip.modulus(forces, tips ** (1 / tip.power) * lengths)
-    voltage = scene.volts if scene.drive is None else scene.drive.effective
+    voltage: Any = volts or (scene.volts if scene.drive is None else scene.drive.effective)
     try:
         ridge = Cylinder(tip, moduli, scene.h_0, closure, _stiffening(scene, state, shear))
         return ridge.under_loads(forces, voltage)

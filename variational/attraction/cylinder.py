@@ -43,8 +43,9 @@ from variational.attraction.tip import Tip
 from variational.roughness.closure import Closure
 
 Array = NDArray[np.floating[Any]]
-Voltage = float | Callable[[Array], Array]
-"""A voltage U (V), or one of Eq. 3 by the air gap (m) where a drive loses a part of it that depends on the gap."""
+Voltage = float | Array | Callable[[Array], Array]
+"""A voltage U (V), of all loads or of each, or one of Eq. 3 by the air gap (m) where a drive loses a part of it that
+depends on the gap."""
 _PRESSURES = np.geomspace(10.0, 1e7, 181)  # Pa, among which roots are separated
 _LEAST, _START, _MOST = 4e-5, 1.7, 1e6  # of the root of m^2 - 1
 _WIDEST = 200.0  # ln x^p at most
@@ -129,6 +130,7 @@ class Cylinder:
         f = np.asarray(f, dtype=float)
         if not np.all(f > 0):
             raise NoEquilibriumError(f"the force on a ridge is {f[~(f > 0)][0]:g} N/m; it must be greater than 0")
+        voltage = voltage if callable(voltage) else np.broadcast_to(np.asarray(voltage, dtype=float), f.shape)
         modulus, h_0 = (np.broadcast_to(np.asarray(x, dtype=float), f.shape) for x in (self.modulus, self.h_0))
         loads = _Loads(f, modulus, h_0, np.arange(len(f)), self.tip)
         pressures = _PRESSURES[:: self.tip.stride]
@@ -138,9 +140,10 @@ class Cylinder:
         crossed = np.sign(values[:-1]) != np.sign(values[1:])
         none = ~crossed.any(axis=0) | (values[-1] <= 0)
         if none.any():
+            at = "a drive" if callable(voltage) else f"{voltage[none][0]:g} V"
             raise NoEquilibriumError(
                 f"no contact pressure from {_PRESSURES[0]:g} to {_PRESSURES[-1]:g} Pa bears {f[none][0]:g} N/m on a "
-                f"ridge at {'a drive' if callable(voltage) else f'{voltage:g} V'}; try another force or length"
+                f"ridge at {at}; try another force or length"
             )
         k, load = np.nonzero(crossed)
         crossing, near = loads[load], edges[k, load]
@@ -239,7 +242,7 @@ class Cylinder:
         """
         d_eq, gain = self._laws_at(p_c, loads)
         loads = loads if gain is None else replace(loads, modulus=loads.modulus + gain)
-        volts = voltage(d_eq) if callable(voltage) else voltage
+        volts = voltage(d_eq) if callable(voltage) else voltage[loads.number]  # type: ignore[index]
         sigma = VACUUM_PERMITTIVITY * volts**2 / 2 / (loads.h_0 + d_eq) ** 2
         a, beyond, near = self._edge(loads, sigma, loads.h_0 + 2 * d_eq, near)
         return a, beyond, sigma, d_eq, near
