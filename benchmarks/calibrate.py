@@ -162,12 +162,15 @@ def compute(args: argparse.Namespace) -> None:
     keep("calibrate", numbers, made(), args.docs)
 
 
+def _region(key: dict[str, float], unit: float = 1.0) -> str:
+    value, low, high = (f"{unit * key[name]:.3g}" for name in ("value", "low", "high"))
+    return f"{value} ({low} to {high})"
+
+
 def draw(docs: Path) -> Path:
     """Put the numbers in place in docs/calibrate.md."""
     return page(docs, "calibrate", "make calibrate", globals() | {"found": kept("calibrate", docs).numbers})
 
 
 if __name__ == "__main__":
-    sys.exit(
-        main(__doc__, compute, draw, full={"action": "store_true", "help": "the tables by full runs, and no others"})
-    )
+    sys.exit(main(__doc__, compute, draw, full={"action": "store_true", "help": "only the tables by full runs"}))
