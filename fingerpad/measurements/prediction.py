@@ -1,8 +1,8 @@
 r"""What the closed form answers for the rows of a table of whole fingers, at other values of a scene's keys.
 
 Each voltage has one trace of the cross-section per state (:mod:`fingerpad.slices.traces`), on which the force of each
-row is found. Traces of constant voltages are
-computed together. The air gap is that of the closure at the mean contact pressure of the finger's centre.
+row is found. Traces of constant voltages are computed together. The air gap is that of the closure at the mean contact
+pressure of the finger's centre.
 
 Keys of shape, layers and contact change the press of the finger (:mod:`fingerpad.reduced.press`). Rows y are power laws
 of them about the scene's own values :math:`k_0`, with exponents from two presses each, 25 % to either side:
