@@ -9,16 +9,11 @@ import pytest
 import fingerpad as fp
 from benchmarks import harness
 from fingerpad.reduced.closure_band import LAW, Slip, friction, laws_like, powers, with_band
-from fingerpad.report import run_page, trust
+from fingerpad.report import trust
 from fingerpad.results.headline import known_in_words
 from fingerpad.results.quantities import KNOWN
 from tests.test_closures import Held
 from variational.caution import Caution
-
-
-def bars(result: fp.Result) -> str:
-    """Return the bars of a result's band, as its report has them."""
-    return run_page.bars_of(result).replace("\u00a0", " ")
 
 
 @pytest.fixture(scope="module")
@@ -109,7 +104,7 @@ def test_largest_number_that_is_an_upper_bound(result):
     share = float(law.balanced(run.record["full_slip_p_c"], 100.0))
     assert closure["upper_bounds"] == {"boundary elements": pytest.approx(share, rel=1e-9)} and share > 0.1
     words = f"The largest number, by boundary elements, is an upper bound: attraction balances {100 * share:.0f} %"
-    assert words in known_in_words(result.known) and words in bars(result)
+    assert words in known_in_words(result.known)
     small = fp.run(result.scene.replace(voltage=20.0), model="cylinders")  # which balances less than a tenth
     assert small.known["parts"][0]["name"] == "rough contact" and "upper_bounds" not in small.known["parts"][0]
 
@@ -120,7 +115,7 @@ def test_result_whose_own_closure_has_no_number(adhering):
     assert (own.known["low"], own.known["high"], own.known["parts"]) == (None, None, []) and own.closures == {}
     why = "by the result's own closure ridges adhere at 200 V"
     sentence = f"Friction at full slip, {own.finger.f_ext:.4g} N and 200 V, is not known: {why}."
-    assert str(own.headline) == sentence and np.isnan(own.headline.value) and bars(own) == ""
+    assert str(own.headline) == sentence and np.isnan(own.headline.value)
     kind, words = trust.verdict(trust.findings(own))
     assert (kind, words) == (trust.BAD, f"Do not use these numbers as they are: friction is not known. B{why[1:]}.")
     assert not [each for each in trust.findings(adhering) if each.verdict == trust.BAD]
@@ -138,15 +133,11 @@ def test_reason_of_no_number(result, voltage, why):
     assert friction(result.scene, slip, law, None) == Slip(np.inf, why)
 
 
-def test_text_files_and_picture_have_it(result):
+def test_text_and_files_have_it(result):
     ends = f"{result.known['low']:.2f} to {result.known['high']:.2f}"
     assert f"\n  Likely range {ends}.\n  With one assumption changed: rough contact " in str(result)
     again = fp.Result.from_xarray(result.to_xarray())
     assert again.known == result.known and KNOWN in again.record
-    picture = bars(result)
-    names = ("solved to", "likely range", "rough contact", "friction law", "tips")
-    assert all(f">{name}<" in picture for name in names)
-    assert "of the whole finger (–)<" in picture and "µ_app of" not in picture, "its symbol is typeset"
 
 
 # -- the likely range of friction: its law of friction, changes by full runs, and where there is none, with the reason
