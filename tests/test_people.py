@@ -152,7 +152,7 @@ def test_people_of_other_closures_have_their_numbers(result):
 def test_text_report_and_files_have_the_range(result):
     found = result.people
     words = f"Likely range over people {found['low']:.2f} to {found['high']:.2f} (nine in ten)."
-    assert f"\n  {words}\n" in str(result) and found["low"] < 0.5 * result.known["mu_app"]
+    assert f"\n  {words}\n" in str(result) and found["low"] < 0.5 * found["mu_app"]
     assert fp.Result.from_xarray(result.to_xarray()).people == found
 
 

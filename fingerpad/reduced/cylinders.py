@@ -161,7 +161,6 @@ def over_forces(
     f_ext: Sequence[float],
     state: str,
     pressed: Sequence[ContactState] | Press = (),
-    tips: float = 1.0,
     shear: float = SHEAR,
 ) -> list[ContactState]:
     """Return a state of a scene under each of several external forces, computed together.
@@ -172,14 +171,13 @@ def over_forces(
         state: ``charged`` or ``full_slip``.
         pressed: states without voltage under these forces, or a press, whose contact it is; by default the finger's
             press.
-        tips: radius of the ridges' tips over that of the scene; Hertz's length grows with its root.
         shear: in place of :data:`SHEAR`.
 
     Raises:
         SceneError: as :func:`solve`, but for what is wrong with the other state alone.
     """
     check_supported(scene, Cylinders.name)
-    return [found for found, _ in _over_forces(scene, f_ext, state, pressed, tips, shear)]
+    return [found for found, _ in _over_forces(scene, f_ext, state, pressed, shear)]
 
 
 def _over_forces(
@@ -187,7 +185,6 @@ def _over_forces(
     f_ext: Sequence[float],
     state: str,
     pressed: Sequence[ContactState] | Press = (),
-    tips: float = 1.0,
     shear: float = SHEAR,
 ) -> list[tuple[ContactState, RidgeState]]:
     """Return the states of :func:`over_forces`, and those of a ridge."""
@@ -198,7 +195,7 @@ def _over_forces(
     def solved(left: Any = 1.0) -> tuple[NDArray[Any], list[RidgeState]]:
         """Return how many ridges are in contact, and their states, with a part of the press's contact left."""
         ridges = own.ridge_count(f_ext, state, left) if isinstance(own, Press) else given
-        return ridges, _ridges(scene, state, force / ridges, left * length / ridges, tips, shear)
+        return ridges, _ridges(scene, state, force / ridges, left * length / ridges, shear)
 
     left: Any = 1.0
     if isinstance(own, Press):
@@ -218,10 +215,10 @@ def _over_forces(
     return states
 
 
-def _ridges(scene: Scene, state: str, forces: Array, lengths: Array, tips: float, shear: float) -> list[RidgeState]:
+def _ridges(scene: Scene, state: str, forces: Array, lengths: Array, shear: float) -> list[RidgeState]:
     """Return the states of ridges under external forces (N/m), with lengths in contact (m) without voltage."""
-    tip, closure = tip_of(scene.geometry, lengths, tips), scene.closure()
-    moduli = tip.modulus(forces, tips ** (1 / tip.power) * lengths)
+    tip, closure = tip_of(scene.geometry, lengths), scene.closure()
+    moduli = tip.modulus(forces, lengths)
     voltage = scene.volts if scene.drive is None else scene.drive.effective
     try:
         ridge = Cylinder(tip, moduli, scene.h_0, closure, _stiffening(scene, state, shear))
@@ -259,13 +256,12 @@ def _others(state: str, ridge: RidgeState) -> list[Caution]:
     return [Caution("other_states", text, ridge.others[0])]
 
 
-def tip_of(finger: Fingertip, lengths: Array, tips: float = 1.0) -> Tip:
+def tip_of(finger: Fingertip, lengths: Array) -> Tip:
     """Return the tips of ridges about the lengths (m) of their contact without voltage.
 
     Args:
         finger: whose ridges they are.
         lengths: shape (loads,).
-        tips: radius of the tips over that of the finger.
 
     Raises:
         SceneError: a ridge has several crests, or one beside its middle.
@@ -279,9 +275,9 @@ def tip_of(finger: Fingertip, lengths: Array, tips: float = 1.0) -> Tip:
             "model 'full'"
         )
     if len(finger.ridge_profile) == 1:
-        return Round(tips * tip_radius(finger))
+        return Round(tip_radius(finger))
     depth, power = kernel(profiles.harmonics, finger.ridge_wavelength, lengths / 2)
-    return Power(power, depth, tips ** (1 / power) * lengths / 2)
+    return Power(power, depth, lengths / 2)
 
 
 def tip_radius(finger: Fingertip) -> float:

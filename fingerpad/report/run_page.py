@@ -69,7 +69,7 @@ def _factor(result: Result) -> str:
 def _claims(result: Result) -> list[str]:
     """Return sentences on how far the number is solved and known, without their points."""
     found = result.headline
-    known = (line.removesuffix(".") for line in (found.people, *found.known.splitlines(), found.remark))
+    known = (line.removesuffix(".") for line in (found.people, found.closures, found.remark))
     return [words for words in (found.solved, *known) if words]
 
 
