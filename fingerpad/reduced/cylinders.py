@@ -136,7 +136,7 @@ def solve(scene: Scene) -> Result:
     exact = "a closed form, without a mesh: no discretisation error but that of the contact length it is given"
     cautions, found = list[Caution](), dict[str, ContactState]()
     for state in STATES:
-        ((found[state], ridges[state]),) = _over_forces(scene, [scene.f_ext], state)
+        ((found[state], ridges[state]),) = _over_forces(scene, [scene.f_ext], state, (), SHEAR)
         cautions += _others(state, ridges[state])
     known = cylinder_errors.errors(scene.model_copy(update={"force": None}), found)
     cautions += cylinder_errors.cautions(scene, _pull(found["full_slip"]))
@@ -184,8 +184,8 @@ def _over_forces(
     scene: Scene,
     f_ext: Sequence[float],
     state: str,
-    pressed: Sequence[ContactState] | Press = (),
-    shear: float = SHEAR,
+    pressed: Sequence[ContactState] | Press,
+    shear: float,
 ) -> list[tuple[ContactState, RidgeState]]:
     """Return the states of :func:`over_forces`, and those of a ridge."""
     own, force, law = pressed or press.of(scene), np.array(f_ext), scene.friction_law()
