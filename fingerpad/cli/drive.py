@@ -3,6 +3,7 @@
 import argparse
 import math
 from collections.abc import Sequence
+from pathlib import Path
 
 from fingerpad.cli import output
 from fingerpad.cli.arguments import Parser, changes, echo, quantities, refuse_twice, scene_of
@@ -59,7 +60,12 @@ def main(argv: Sequence[str]) -> int:
     if beyond:
         echo(f"Extrapolated, at {', '.join(beyond)} Hz: the component that decides is beyond the known thresholds.")
     echo("Thresholds are ± 3 dB, and of displacement; volts of a person do not follow from them.")
-    output.write_files(args, _COLUMNS, rows, lambda file, _: found and found.plot(file))
+
+    def draw(file: Path, _: object) -> None:
+        if found is not None:
+            found.plot(file)
+
+    output.write_files(args, _COLUMNS, rows, draw)
     return 0
 
 

@@ -111,7 +111,7 @@ class BearingArea(RoughSurface):
         p_c = self.inside(p_c)
         u_bar, (d_eq, slope) = self.separation(p_c), self(p_c)
         assert slope is not None
-        per_pressure = -self.gamma * self.h_rms / p_c
+        per_pressure = np.asarray(-self.gamma * self.h_rms / p_c)
         narrows = -np.exp(-((u_bar / self.h_rms) ** 2) / 2) / (np.sqrt(2 * np.pi) * self.h_rms)
         square = (self.h_0 + d_eq) ** -2
         slopes = Slopes(narrows * per_pressure, per_pressure, -2 * square / (self.h_0 + d_eq) * slope, slope)

@@ -167,7 +167,7 @@ class RoughSurface(Named, Closure):
             raise ValueError(
                 f"the contact pressure is {p_c[out].flat[0]:g} Pa; {type(self).__name__} has {low:.4g} to {high:.4g} Pa"
             )
-        return np.clip(p_c, low, high)
+        return np.asarray(np.clip(p_c, low, high), dtype=float)
 
 
 def air_gaps(closure: Closure, p_c: ArrayLike) -> Array:
