@@ -134,12 +134,13 @@ def by_full_runs(args: argparse.Namespace) -> list[dict[str, Any]]:
         rng, off = np.random.default_rng(seed), []
         made = [(force, 0.0, friction * force, 0.0) for force in FULL_FORCES]
         for volts, scene in zip(FULL_VOLTAGES, scenes.values(), strict=True):
-            trace = fp.Result.load(args.out / batch.key(scene)).finger.traces["full_slip"]
+            finger: Any = fp.Result.load(args.out / batch.key(scene)).finger
+            trace = finger.traces["full_slip"]
             for force in FULL_FORCES:
                 f_t = at_force(profile(scene.slices), trace, force, scene.slices.count).totals["f_t"]
-                closed = {at: fp.run(at.replace(force=force, voltage=volts), model="cylinders") for at in (start, own)}
-                off.append(closed[own].finger.full_slip.f_t / f_t - 1)
-                head = closed[start].headline
+                here: Any = fp.run(own.replace(force=force, voltage=volts), model="cylinders").finger
+                off.append(here.full_slip.f_t / f_t - 1)
+                head = fp.run(start.replace(force=force, voltage=volts), model="cylinders").headline
                 made.append((force, volts, f_t, head.error / head.value))
         rows = [(*at, f_t * np.exp(NOISE * rng.normal()), 100 * np.hypot(NOISE, known)) for *at, f_t, known in made]
         heads = ["force (N)", "voltage (V)", "friction force (N)", "spread (%)"]
