@@ -20,6 +20,7 @@ Its numbers become constants of the compiled form.
 """
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
 from numbers import Real
 from typing import Any, ClassVar
@@ -28,7 +29,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from variational.caution import Caution
-from variational.coefficients import Law, parameter, said
+from variational.coefficients import Law, parameter, said, ufl
 
 Array = NDArray[np.float64]
 CONE_ROUNDOFF = 1e-8  # relative: a traction this near the limit counts as on it
@@ -36,6 +37,32 @@ _PRESSURES = np.array([0.0, 1.0, 1e2, 1e4, 1e6])  # Pa, at which a law is examin
 _JUMP = 1e-6  # Pa, p_n at which the limit must be below _JUMPED
 _JUMPED = 1.0  # Pa
 _SMALL, _STEEPER = (1e-6, 1.0), 1.5  # Pa, between which the limit over the pressure must not rise by more
+
+
+class Part:
+    """Pressures (Pa) over the part of a facet that a point stands for, linear from place to place along it; UFL.
+
+    Attributes:
+        p: contact pressure p_n at the point.
+        mean: mean contact pressure over the part; without places that at the point.
+    """
+
+    def __init__(self, p, along: Sequence[Any] = ()) -> None:
+        """Take the pressure at the point, and those from end to end of the part, negative out of contact."""
+        closed = [ufl.conditional(ufl.gt(each, 0.0), each, 0.0) for each in along]
+        self.p, self._pieces = p, []
+        for first, last, a, b in zip(along[:-1], along[1:], closed[:-1], closed[1:], strict=True):
+            ends = ufl.lt(first * last, 0.0)  # contact ends between the two, and the mean is that of a triangle
+            self._pieces.append((ufl.conditional(ends, (a + b) ** 2 / abs(first - last), a + b) / 2, a, b))
+        self.mean = sum(mean for mean, _, _ in self._pieces) / len(self._pieces) if along else p
+
+    def share(self, p_reg):
+        r"""Return the share in contact, of which pressures below p_reg (Pa) have less.
+
+        The mean of :math:`p / \sqrt{p^2 + p_{reg}^2}`, whose integral over a linear pressure is closed form.
+        """
+        roots = [((a**2 + p_reg**2) ** 0.5 + (b**2 + p_reg**2) ** 0.5) / 2 for _, a, b in self._pieces]
+        return sum(mean / root for (mean, _, _), root in zip(self._pieces, roots, strict=True)) / len(roots)
 
 
 class Friction(Law, ABC):
@@ -61,10 +88,18 @@ class Friction(Law, ABC):
         """
         raise NotImplementedError
 
-    def limit_in(self, state: Any) -> Array:
-        """Return the limit (Pa) at the points of a :class:`variational.contact.formulation.SurfaceState`."""
-        more = [] if self.memory is None else [state.history["memory"]]
-        return np.asarray(self.limit(state.p_n, *more))  # type: ignore[call-arg]
+    @property
+    def by_area(self) -> bool:
+        """Whether the law has a :meth:`limit_over` of its own."""
+        return type(self).limit_over is not Friction.limit_over
+
+    def limit_over(self, part: "Part", *memory):
+        """Return the mean limit (Pa) over the part of a facet that a point stands for, UFL; by default the point's.
+
+        A limit that is not proportional to the pressure goes with the area in contact. Where that ends within a facet,
+        points alone have it with an error of first order in the facet's size, and with jumps as they come and go.
+        """
+        return self.limit(part.p, *memory)
 
     @abstractmethod
     def limit(self, p):
@@ -209,6 +244,10 @@ class Derjaguin(Friction):
     def limit(self, p):
         """Return the limit (Pa)."""
         return self.mu_f * p + self.tau_0 * p / (p**2 + self.p_reg**2) ** 0.5
+
+    def limit_over(self, part: Part, *memory):
+        """Return mu_f times the point's pressure and tau_0 times the share in contact (Pa)."""
+        return self.mu_f * part.p + self.tau_0 * part.share(self.p_reg)
 
 
 def law_of(given: "Friction | float | None") -> Friction | None:
