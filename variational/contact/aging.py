@@ -78,7 +78,7 @@ class GrowingShear(Growing):
     """Time T (s) in which what is left of the growth falls to 37 %. Three of 7 s are the 20 s in which ridges on glass
     were seen to grow."""
     p_reg: float = parameter(1e-3, 1e9, "Pa", default=1e3)
-    """Contact pressure (Pa) below which tau_0 fades out. *Assumption*; a larger tau_0 may need a larger one."""
+    """Contact pressure (Pa) below which tau_0 fades out. *Assumption*."""
 
     def limit(self, p, memory=0.0):
         """Return the limit (Pa)."""
