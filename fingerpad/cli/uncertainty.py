@@ -16,6 +16,8 @@ et al. 2010, doi 10.1016/j.cpc.2009.09.018, by SALib (Herman and Usher 2017, doi
 import itertools
 import time
 from collections.abc import Callable, Sequence
+from contextlib import closing
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -24,11 +26,13 @@ from numpy.typing import NDArray
 
 from fingerpad.cli import output
 from fingerpad.cli.arguments import Parser, echo, scene_of
-from fingerpad.reduced.closure_band import LAW, changes, closures, friction
+from fingerpad.reduced.closure_band import closures, friction, laws_beside
 from fingerpad.reduced.people_band import Fingers, entering
+from fingerpad.results.folder import Serial
 from fingerpad.results.headline import WHOLE
 from fingerpad.results.quantities import Output
 from fingerpad.results.result import Result
+from fingerpad.results.terminal import Console
 from fingerpad.runs.solve import run
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.people import SPREADS
@@ -42,7 +46,7 @@ POINTS = 256
 """Points of Sobol's sequence. There are as many fingers for each factor, and twice as many besides."""
 _SEED = 1  # of scrambling and of resampling
 _COATING = (0.8, 1.2)
-_PEOPLE, _MODELS, _COATED, _SOLUTION = "people", "rough contact", "coating", "solution"
+_PEOPLE, _MODELS, _LAW, _COATED, _SOLUTION = "people", "rough contact", "friction law", "coating", "solution"
 _OF_PEOPLE = f"{_PEOPLE}: "
 _PRESSURES = np.array([1e3, 1e5])  # Pa, at which two laws are the same
 _COLUMNS = tuple(Output(name, "", digits=2) for name in ("factor", "first", "first_error", "total", "total_error"))
@@ -55,10 +59,11 @@ def main(argv: Sequence[str]) -> int:
     output.add_files(parser, _COLUMNS, "picture of the total indices")
     args = parser.read(argv)
     begin, result = time.perf_counter(), run(scene_of(args, meshed=False), model="cylinders")
-    study, head = Study(result), result.headline
-    rows = indices(study, [_PEOPLE if name in SPREADS else name for name in study.names])
-    place = next(k for k, row in enumerate(rows) if row["factor"] == _PEOPLE) + 1
-    each = [row for row in indices(study, study.names) if row["factor"] in SPREADS]
+    with closing(Console(Serial(), lines=False)) as console:  # type: ignore[arg-type]  # its rank
+        study, head = Study(result, partial(console.phase, "fingers by the closed form")), result.headline
+        rows = indices(study, [_PEOPLE if name in SPREADS else name for name in study.names])
+        place = next(k for k, row in enumerate(rows) if row["factor"] == _PEOPLE) + 1
+        each = [row for row in indices(study, study.names) if row["factor"] in SPREADS]
     rows[place:place] = [row | {"factor": _OF_PEOPLE + row["factor"]} for row in each]
     echo(f"Parts of the variance of ln {head.symbol} of the {head.of}, {head.at}, about {head.value:.3g}:")
     echo(output.text(_COLUMNS, rows))
@@ -71,8 +76,12 @@ def main(argv: Sequence[str]) -> int:
 class Study:
     """The fingers about a result of the closed form, as a function of numbers from 0 to 1: ``names`` of factors."""
 
-    def __init__(self, result: Result) -> None:
+    def __init__(self, result: Result, progress: Callable[[float], object] = float) -> None:
         """Find the models of roughness and the laws of friction that have a number.
+
+        Args:
+            result: of the closed form.
+            progress: takes the part of the fingers of :func:`main` that is done, from 0 on.
 
         Raises:
             SceneError: the result has no friction at full slip, or its own closure has no number.
@@ -83,15 +92,17 @@ class Study:
         own, self.result, self.laws = scene.closure(), result, [law]
         if why := friction(scene, slip, own, None).why:
             raise SceneError(f"friction at full slip is not known: by the scene's own roughness {why}")
-        for each, *_ in changes(scene, slip, None)[LAW]:
-            other: Any = each.friction_law()
+        for each in laws_beside(scene, slip):
+            other: Any = scene.model_copy(update={"friction": each}).friction_law()
             if not any(np.allclose(other.limit(_PRESSURES), one.limit(_PRESSURES), rtol=1e-3) for one in self.laws):
                 self.laws.append(other)
         models = closures(own) or {"its own model": own}
         self.missing = {name: why for name, law in models.items() if (why := friction(scene, slip, law, None).why)}
         self.closures = {name: law for name, law in models.items() if name not in self.missing}
         known = [_SOLUTION] if np.isfinite(result.headline.error) else []
-        self.names = [*entering(own), *([_MODELS, _COATED] if own.shared else []), LAW, *known]
+        self.names = [*entering(own), *([_MODELS, _COATED] if own.shared else []), _LAW, *known]
+        self._progress = progress
+        self._every = POINTS * (5 + 2 * len(self.names) - len(entering(own)))  # of both analyses
         self.count = self.lost = 0  # fingers that were computed, and those of them without a number
 
     def __call__(self, points: Array) -> Array:
@@ -103,12 +114,13 @@ class Study:
         result, head, mu_app = self.result, self.result.headline, np.empty(len(points))
         chosen = (
             np.minimum(len(of) * part.get(name, 0 * mu_app), len(of) - 1).astype(int)
-            for name, of in ((_MODELS, self.closures), (LAW, self.laws))
+            for name, of in ((_MODELS, self.closures), (_LAW, self.laws))
         )
         group = np.ravel_multi_index(tuple(chosen), (len(self.closures), len(self.laws)))
         for k, (model, law) in enumerate(itertools.product(self.closures.values(), self.laws)):
             scene = result.scene.model_copy(update={"roughness": model, "friction": law})
             slip: Any = result.full_slip
+            self._progress((self.count + (group < k).sum()) / self._every)
             if (mine := group == k).any():
                 own = {name: each[mine] for name, each in factors.items()}
                 mu_app[mine] = Fingers(scene, slip, None, head.of == WHOLE, own).mu_app()
