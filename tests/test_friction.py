@@ -173,6 +173,12 @@ def test_friction_of_a_shear_stress_is_its_area():
     assert made.solver.counts.factorisations < 60
 
 
+@pytest.mark.parametrize(("law", "part"), [(Coulomb(0.25), 1.0), (SHEAR, 0.1), (None, 1.0)])
+def test_tangential_springs_are_softer_beside_a_law_that_goes_by_area(law, part):
+    assert EPS.beside(law).eps_t == pytest.approx(part * EPS.eps_t, rel=1e-15)
+    assert EPS.beside(law).eps_n == EPS.eps_n
+
+
 # -- a block ---------------------------------------------------------------------------------------------------
 FORCE, WIDTH = 10.0, 1e-3
 EPS = Penalty(1e11, 1e10)

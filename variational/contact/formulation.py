@@ -227,6 +227,10 @@ class Formulation(Named, ABC):
         """
         refuse_not_positive(self)
 
+    def beside(self, friction: Friction | None) -> Self:
+        """Return the formulation as it is taken beside a law of friction; mostly it is the same."""
+        return self
+
     def cautions(self) -> list[Caution]:
         """Return what a check of a scene prints of the formulation before a run."""
         return []
