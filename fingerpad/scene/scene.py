@@ -233,7 +233,8 @@ class Scene(Table):
 
     def friction_law(self) -> Friction | None:
         """Return the law of friction, None without friction; raises as :meth:`closure` does."""
-        return law_of(_known("friction", self.friction))
+        own = _known("friction", self.friction)
+        return own if isinstance(own, Friction) else law_of(own)  # laws are checked where a scene is made
 
     def solids(self) -> dict[int, Material]:
         """Return the material of each layer's tag; raises as :meth:`closure` does."""
