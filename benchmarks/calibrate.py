@@ -3,8 +3,8 @@
 environment/run python3 -m benchmarks.calibrate [--full] [--draw]     also: make calibrate
 
 Writes docs/calibrate.json, and from it the numbers of docs/calibrate.md; some minutes. Tables are made by the closed
-form from known values, with normal noise on logarithms, from seeds. ``--full`` computes those by full runs alone, of some
-ten minutes, which are kept in results/traces.
+form from known values, with normal noise on logarithms, from seeds. ``--full`` computes those by full runs alone, of
+some ten minutes, which are kept in results/traces.
 """
 
 import argparse
