@@ -167,7 +167,7 @@ class StateSolver(Simulation):
         place = problem.history.followed(self.finger.continuation.surface_state.history)["anchor"]
         elastic = problem.history.accepted["anchor"] - place
         problem.history.accept({"anchor": place + elastic / 2 - direction * SLIDE_ON})
-        problem.set_formulation(formulation)
+        problem.set_interface(replace(problem.interface, formulation=formulation))
         self._balance(name)
 
     def _balance(self, name: str) -> Attempt:
@@ -264,7 +264,7 @@ def _solve(
     ends = ((contact_ends(state.snapshot, along, state.facet), state.facet) for state in states.values())
     simulation = StateSolver(model.changed(edges=edge_places(ends, model.mesh)), comm)
     recorder, over, finger = StateRecorder(simulation), StateRecorder(simulation), simulation.finger
-    springs, soft, viewer = finger.problem.interface.formulation, "", Viewer(finger) if views else None
+    interface, soft, viewer = finger.problem.interface, "", Viewer(finger) if views else None
     for name, state in states.items():
         words = WORDS.get(name, name)
         pause()
@@ -280,7 +280,7 @@ def _solve(
                 over.keep(name, state.direction != 0)
             except StepFailed as error:
                 soft = str(error)
-            finger.problem.set_formulation(springs)
+            finger.problem.set_interface(interface)
     finger.solver.iteration.free()
     simulation.checks.free()
     stiff = over.solve() if over.states and not soft else None

@@ -206,6 +206,9 @@ class Output(Table):
     followed on elements twice as large, and the named states are solved again on the mesh that is given, finest where
     contact ends. With viscous layers the path is followed on the mesh that is given, and once more on elements twice as
     large. With an accuracy errors are always estimated."""
+    sensitivities: Switch = False
+    """Whether the slopes of friction, contact length and pressure by every number of the scene are computed, at full
+    slip and in contact without friction; see :mod:`variational.sensitivity`."""
     each_load: Switch = True
     """Whether the finger and its skin are drawn at the end of each load. A load over time has one end."""
 
