@@ -45,7 +45,8 @@ from variational.solvers.outcome import NotConverged, linear_failure
 from variational.solvers.target import Control
 
 Array = NDArray[np.float64]
-_STEP = 1e-3  # of a number, of the difference quotients at fixed x
+STEP = 2e-4
+"""Part of a number in difference quotients at fixed x; a bulk modulus changes by 25 times that of Poisson's ratio."""
 _MOVE = 1e-11  # m, by which the augmented gap of a point near the contact moves in those of quantities
 _NEAR = 1e-7  # m, augmented gap of such a point at most
 _SLIPS = -0.5  # guess: a point whose trial traction is above half its limit slips on
@@ -81,8 +82,8 @@ class Slopes:
 
 Varied = Callable[[float], Numbers]
 """Returns the numbers with one of a scene's changed by a part of its scale; at 0 they are those of the state."""
-Measure = Callable[[SurfaceState, Control], Mapping[str, float]]
-"""Returns quantities of a skin and a bone; collective."""
+Measure = Callable[[SurfaceState, Array], Mapping[str, float]]
+"""Returns quantities of a skin and of the bone's translation (m), shape (2,); collective."""
 
 
 def quotient(values: Callable[[float], Array], step: float) -> Array:
@@ -120,6 +121,19 @@ def impose(coupling: Coupling, numbers: Numbers) -> None:
     problem.voltage.value, coupling.solver.control = numbers.voltage, replace(numbers.control)
     coupling.closure = numbers.closure
     coupling.set_air_gaps(coupling.d_eq)
+
+
+@dataclass(frozen=True)
+class _Fixed:
+    """Derivatives by one number at fixed unknowns and air gaps."""
+
+    residual: Array
+    skin: Array
+    """Of the values at the Gauss points."""
+    gaps: Array
+    """Of the closure's air gaps."""
+    explicit: Array
+    """Of the quantities."""
 
 
 class Linearised:
@@ -188,22 +202,23 @@ class Linearised:
         return found
 
     # -- derivatives at fixed unknowns -----------------------------------------------------------------
-    def _fixed(self, varied: Varied) -> tuple[Array, Array, Array]:
-        """Return R, values at the Gauss points and air gaps by the closure, derived by a number; collective."""
+    def _fixed(self, varied: Varied) -> "_Fixed":
+        """Return the derivatives by a number at fixed unknowns and air gaps; collective."""
         p_c, solver = self._pressures(self._skin), self.solver
         f = solver.layout.create_vector()
+        sizes = [solver.layout.local_size, _stack(self._skin).size, len(p_c)]
 
         def values(part: float) -> Array:
             impose(self.coupling, varied(part))
             solver.equations.residual(solver.x, f)
             gaps = air_gaps(self.coupling.closure, p_c) if self._charged else np.zeros_like(p_c)
-            return np.concatenate([f.array_r, _stack(self.observer.state()).ravel(), gaps])
+            found = self.measure(self._skin, solver.bone)
+            return np.concatenate([f.array_r, _stack(self.observer.state()).ravel(), gaps, [*found.values()]])
 
-        found = quotient(values, _STEP)
-        skin, local = _stack(self._skin), solver.layout.local_size
-        return found[:local], found[local : local + skin.size].reshape(skin.shape), found[local + skin.size :]
+        residual, skin, gaps, explicit = np.split(quotient(values, STEP), np.cumsum(sizes))
+        return _Fixed(residual, skin.reshape(_stack(self._skin).shape), gaps, explicit)
 
-    def _pressures(self, state: SurfaceState) -> Array:
+    def _pressures(self, state: SurfaceState, part: float = 0.0) -> Array:
         return self.observer.ridge_loads(state, self.coupling.by_gap).p_c
 
     def _closure_slope(self, p_c: Array) -> Array:
@@ -214,7 +229,7 @@ class Linearised:
         if known is not None:
             return np.asarray(known, dtype=float)
         touching = p_c > 0
-        by_part = quotient(lambda part: air_gaps(closure, p_c * (1 + part)), _STEP)
+        by_part = quotient(lambda part: air_gaps(closure, p_c * (1 + part)), STEP)
         return np.divide(by_part, p_c, out=np.zeros_like(p_c), where=touching)
 
     # -- along a change of the state -------------------------------------------------------------------
@@ -233,7 +248,7 @@ class Linearised:
         written = [(self._dd, dd)]
         share, d_eq = self.problem.interface.share, self.coupling.d_eq
         if self._ds is not None and share is not None:
-            written.append((self._ds, quotient(lambda part: share(d_eq * (1 + part)), _STEP) / d_eq * dd))
+            written.append((self._ds, quotient(lambda part: share(d_eq * (1 + part)), STEP) / d_eq * dd))
         surface = self.problem.surface
         for function, values in written:
             function.x.array[surface.pairs[:, 0]] = values[surface.ridge]
@@ -245,78 +260,61 @@ class Linearised:
         gap = _VALUES.index("gap")
         moved = np.abs(change[gap], where=skin[gap] < _NEAR, out=np.zeros_like(skin[gap])).max(initial=0.0)
         most = max(self.problem.mesh.comm.allgather(float(moved)))
-        step = min(_MOVE / most, _STEP) if most > 0 else _STEP
-        return quotient(lambda part: values(_skin(skin + part * change), part), step)
+        step = min(_MOVE / most, STEP) if most > 0 else STEP
+        return quotient(lambda part: values(SurfaceState(*(skin + part * change)), part), step)
 
     # -- all numbers -----------------------------------------------------------------------------------
     def slopes(self, varied: Mapping[str, Varied]) -> dict[str, Slopes]:
-        """Return the derivatives by each number, and leave the state as it was; collective."""
+        """Return the derivatives by each number, and leave the state as it was, with the numbers at 0; collective."""
         self._skin = self.observer.state()
-        ridges = len(self.coupling.d_eq) if self._charged else 0
-        unit, f = np.eye(len(self.coupling.d_eq)), self.solver.layout.create_vector()
-        right: list[Array] = []
-        for k in range(ridges):
-            self._set_gaps(unit[k])
+        none = np.zeros_like(self.coupling.d_eq)
+        unit = np.eye(len(none))[: len(none) if self._charged else 0]
+        right, f = list[Array](), self.solver.layout.create_vector()
+        for each in unit:
+            self._set_gaps(each)
             self.solver.equations.forces(self._by_gaps, f)
             right.append(f.array_r.copy())
         fixed = {key: self._fixed(numbers) for key, numbers in varied.items()}
-        self._restore(next(iter(varied.values()), None))
-        solved = self._solve([*right, *(each[0] for each in fixed.values())])
-        B, of_numbers = solved[:ridges], dict(zip(fixed, solved[ridges:], strict=True))
-
-        def pressures(change: Array) -> Array:
-            return self._along_skin(lambda skin, part: self._pressures(skin), change)
-
-        loop, closure_slope = np.eye(len(unit)), np.zeros(len(unit))
-        if ridges:
+        for numbers in [*varied.values()][:1]:
+            impose(self.coupling, numbers(0.0))
+        self._place.restore(self.coupling)
+        solved = self._solve([*right, *(each.residual for each in fixed.values())])
+        B, of_numbers = solved[: len(unit)], dict(zip(fixed, solved[len(unit) :], strict=True))
+        skins = [self._skin_along(*pair) for pair in zip(B, unit, strict=True)]
+        loop = np.eye(len(unit))
+        if len(unit):
             closure_slope = self._closure_slope(self._pressures(self._skin))
-            skins = [self._skin_along(b, unit[k]) for k, b in enumerate(B)]
-            loop = loop - closure_slope[:, None] * np.stack([pressures(skin) for skin in skins], axis=1)
+            loop = loop - closure_slope[:, None] * np.stack([self._along_skin(self._pressures, s) for s in skins], axis=1)
         found = {}
         for key, a in of_numbers.items():
-            _, skin, gaps = fixed[key]
-            skin = skin + self._skin_along(a, np.zeros(len(unit)))
-            if ridges:
-                dd = np.linalg.solve(loop, closure_slope * pressures(skin) + gaps)
+            skin = fixed[key].skin + self._skin_along(a, none)
+            if len(unit):
+                dd = np.linalg.solve(loop, closure_slope * self._along_skin(self._pressures, skin) + fixed[key].gaps)
                 skin = skin + sum(d * each for d, each in zip(dd, skins, strict=True))
                 a = a + sum(d * b for d, b in zip(dd, B, strict=True))
-            found[key] = self._slopes(varied[key], a, skin)
-        self._restore(next(iter(varied.values()), None))
+            found[key] = self._slopes(a, skin, fixed[key].explicit)
+        self._place.restore(self.coupling)
         self.problem.guess.value = self._guess
         self._ksp.destroy()
         self._K.destroy()
         return found
 
-    def _restore(self, varied: Varied | None) -> None:
-        if varied is not None:
-            impose(self.coupling, varied(0.0))
-        self._place.restore(self.coupling)
-
-    def _slopes(self, varied: Varied, dx: Array, change: Array) -> Slopes:
+    def _slopes(self, dx: Array, change: Array, explicit: Array) -> Slopes:
         """Return the derivatives of the quantities along a change of the state."""
         step = self.solver.layout.create_vector()
         step.array_w[:] = dx
-        bone, slope = self.solver.bone, self.solver.layout.rigid_part(step)
-        names: list[str] = []
+        bone = self.solver.layout.rigid_part(step)
+        names = [*self.measure(self._skin, self.solver.bone)]
 
         def values(skin: SurfaceState, part: float) -> Array:
-            numbers = varied(part)
-            self.problem.interface = numbers.interface
-            x, y = bone + part * slope
-            found = self.measure(skin, Control(float(x), float(y), numbers.control.force))
-            names[:] = found
-            return np.array([*found.values(), *self._margins(skin)])
+            return np.array([*self.measure(skin, self.solver.bone + part * bone).values(), *self._margins(skin)])
 
-        now = self._margins(self._skin)
         found = self._along_skin(values, change)
-        self.problem.interface = varied(0.0).interface
-        rates = found[len(names) :]
+        by_step = dict(zip(names, map(float, found[: len(names)] + explicit), strict=True))
         with np.errstate(divide="ignore", invalid="ignore"):
-            ends = -now / rates
+            ends = -self._margins(self._skin) / found[len(names) :]
         ends = ends[np.isfinite(ends)]
-        down, up = -ends[ends < 0], ends[ends > 0]
-        by_step = dict(zip(names, map(float, found), strict=False))
-        return Slopes(by_step, float(down.min(initial=np.inf)), float(up.min(initial=np.inf)))
+        return Slopes(by_step, float((-ends[ends < 0]).min(initial=np.inf)), float(ends[ends > 0].min(initial=np.inf)))
 
     def _margins(self, skin: SurfaceState) -> Array:
         """Return of each ridge its contact force (N/m), or without one the gap of its lowest point (m); collective."""
@@ -329,7 +327,3 @@ class Linearised:
 
 def _stack(skin: SurfaceState) -> Array:
     return np.stack([np.broadcast_to(getattr(skin, name), skin.x.shape) for name in _VALUES])
-
-
-def _skin(values: Array) -> SurfaceState:
-    return SurfaceState(*values)

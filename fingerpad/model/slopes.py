@@ -8,9 +8,11 @@ given their numbers. The shape of the finger is left out, whose numbers move the
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fingerpad.model.finger import Finger, both_sides
 from fingerpad.model.options import FingerModel
@@ -18,9 +20,10 @@ from fingerpad.scene import Scene
 from fingerpad.scene.controls import number_of
 from fingerpad.scene.keys import by_name
 from variational.contact.formulation import SurfaceState
-from variational.sensitivity import Linearised, Numbers, Slopes, impose
+from variational.sensitivity import STEP, Linearised, Numbers, impose
 from variational.solvers.target import Control
 
+Array = NDArray[np.float64]
 _SAME = 1e-9  # relative, of a load that is that of the state
 
 
@@ -66,15 +69,15 @@ def state_slopes(model: FingerModel, finger: Finger, load_number: int) -> StateS
         )  # fmt: skip
         return Numbers(of.solids, interface, of.closure, Control(control.x, height, force or 0.0), float(levels[-1]))
 
-    def quantities(skin: SurfaceState, bone: Control) -> dict[str, float]:
+    def quantities(skin: SurfaceState, bone: Array) -> dict[str, float]:
         loads, peaks = finger.observer.ridge_loads(skin), finger.observer.highest_pressures(skin)
         if not finger.options.both_halves:
             loads, peaks = loads.whole(), both_sides(peaks)
         f_t, pull = -float(loads.f_friction.sum()), float(loads.f_attraction.sum())
         f_ext = float(loads.f_contact.sum()) - pull - float(loads.f_adhesion.sum())
-        found = {"mu_app": f_t / f_ext if f_ext else math.nan, "f_t": f_t, "f_ext": f_ext, "f_electrostatic": pull}
+        found = {"mu_app": f_t / f_ext, "f_t": f_t, "f_electrostatic": pull}
         found |= {"contact_length": float(loads.length.sum()), "p_max": float(peaks.max())}
-        return found | {"bone_height": float(bone.y or 0.0)}
+        return found | ({"bone_height": float(bone[1])} if control.y is None else {"f_ext": f_ext})
 
     try:
         now = numbers(model)
@@ -93,8 +96,8 @@ def state_slopes(model: FingerModel, finger: Finger, load_number: int) -> StateS
             return numbers(model.with_number(key, value + part * scale)) if part else now
 
         try:
-            impose(coupling, changed(1e-3))
-            varied[key] = changed
+            impose(coupling, changed(STEP))
+            varied[key] = cache(changed)
         except ValueError as error:
             left_out[key] = str(error)
     impose(coupling, now)
