@@ -16,6 +16,8 @@ from numpy.typing import NDArray
 
 from fingerpad.model.finger import Finger, both_sides
 from fingerpad.model.options import FingerModel
+from fingerpad.model.simulation import Simulation
+from fingerpad.results.slopes import SLOPES
 from fingerpad.scene import Scene
 from fingerpad.scene.controls import number_of
 from fingerpad.scene.keys import by_name
@@ -43,7 +45,26 @@ class StateSlopes:
 
     def to_dict(self) -> dict[str, Any]:
         """Return all of it, ready for JSON."""
-        return {name: value for name, value in vars(self).items() if value}
+        ends = {key: [end if end < math.inf else None for end in both] for key, both in (self.ends or {}).items()}
+        return {name: value for name, value in vars(self).items() if value} | ({"ends": ends} if ends else {})
+
+
+def of_run(model: FingerModel, simulation: Simulation, states: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the slopes of a run's named states for its record, by state, ready for JSON; collective.
+
+    Args:
+        model: of the run; nothing is returned where it wants none.
+        simulation: its path, whose last state has the slopes where no state was solved for again.
+        states: :class:`fingerpad.accuracy.states.State` by name, as they were solved for again.
+    """
+    if not model.given:
+        return {}
+    found = {name: state.slopes for name, state in states.items() if state.slopes is not None}
+    if not found and simulation.states and not model.options.errors:
+        last = simulation.states[-1]
+        name = "full_slip" if last.slip_held else "charged"
+        found[name] = state_slopes(model, simulation.finger, last.load_number)
+    return {SLOPES: {name: each.to_dict() for name, each in found.items()}}
 
 
 def state_slopes(model: FingerModel, finger: Finger, load_number: int) -> StateSlopes:
