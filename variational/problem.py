@@ -19,7 +19,7 @@ v \,dS`, which is no part of the equations but of pseudo-transient continuation 
 This module adds up forms and never solves.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache
 from typing import Any
@@ -30,8 +30,7 @@ import ufl
 from dolfinx import fem
 
 from variational import jit, kinematics
-from variational.contact.formulation import STICKS, Contact, Formulation, Skin
-from variational.contact.friction import Friction
+from variational.contact.formulation import STICKS, Contact, Skin
 from variational.contact.interface import Interface
 from variational.element import ELEMENTS, Centroid, Element, LayerwisePressure, grouped, write
 from variational.history import History, SkinField

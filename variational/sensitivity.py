@@ -17,10 +17,11 @@ each quantity has the same factorisation; it would need the gradient of each qua
 Woodbury: the ridges change K by a matrix of their number's rank. Rows that are prescribed have the derivative of what
 is prescribed.
 
-:math:`R_\theta` is a difference quotient of R at fixed x and d, of fourth order: no step of Newton's method and no kink
-lies between, since points change neither contact nor direction while x stays. So are :math:`P_\theta, D_\theta`.
-:math:`R_d` and the derivatives of the skin by x and d are UFL's. A quantity is a function of the values at the Gauss
-points, which are moved along their derivatives by some picometres: a difference quotient of fourth order again.
+:math:`R_\theta` is a central difference quotient of R at fixed x and d: no step of Newton's method and no kink lies
+between, since points change neither contact nor direction while x stays. So are :math:`P_\theta, D_\theta`. Numbers that
+are of no layer change R on the skin alone. :math:`R_d` and the derivatives of the skin by x and d are UFL's. A quantity
+is a function of the values at the Gauss points, which are moved along their derivatives by some picometres: a
+difference quotient of fourth order.
 
 The derivative is that with the points in contact as they are. As a number changes, points come and go one by one, and
 the quantity is smooth between. A ridge that comes or goes makes a kink or a jump: :attr:`Slopes.up` and ``down``.
@@ -45,8 +46,9 @@ from variational.solvers.outcome import NotConverged, linear_failure
 from variational.solvers.target import Control
 
 Array = NDArray[np.float64]
-STEP = 2e-4
+STEP = 1e-5
 """Part of a number in difference quotients at fixed x; a bulk modulus changes by 25 times that of Poisson's ratio."""
+_OF_MOVE = 1e-3  # largest part of a change of the state, of the difference quotients of quantities
 _MOVE = 1e-11  # m, by which the augmented gap of a point near the contact moves in those of quantities
 _NEAR = 1e-7  # m, augmented gap of such a point at most
 _SLIPS = -0.5  # guess: a point whose trial traction is above half its limit slips on
@@ -167,11 +169,16 @@ class Linearised:
         if self._ds is not None:
             of_gaps.append((problem.share, self._ds))
         self._along = problem.surface.compile(
-            [sum(ufl.derivative(ufl.as_ufl(each), *way) for way in (*ways, *of_gaps)) for each in self.observer.evaluated]
+            [
+                sum(ufl.derivative(ufl.as_ufl(each), *way) for way in (*ways, *of_gaps))
+                for each in self.observer.evaluated
+            ]
         )
         if self._charged:
             by_gaps = sum(ufl.derivative(problem.weak[0], *way) for way in of_gaps)
             self._by_gaps = fem.form(by_gaps, jit_options=jit.OPTIONS)
+        on_skin = [each for each in problem.weak[0].integrals() if each.integral_type() == "exterior_facet"]
+        self._on_skin = fem.form(ufl.Form(on_skin), jit_options=jit.OPTIONS)
         problem.guess.value = _SLIPS
         self.solver.equations.to_fields(self.solver.x)
         self._factorise()
@@ -208,14 +215,17 @@ class Linearised:
         f = solver.layout.create_vector()
         sizes = [solver.layout.local_size, _stack(self._skin).size, len(p_c)]
 
-        def values(part: float) -> Array:
-            impose(self.coupling, varied(part))
-            solver.equations.residual(solver.x, f)
+        part = self._on_skin if varied(STEP).solids == varied(-STEP).solids else None
+
+        def values(step: float) -> Array:
+            impose(self.coupling, varied(step))
+            solver.equations.residual(solver.x, f, part)
             gaps = air_gaps(self.coupling.closure, p_c) if self._charged else np.zeros_like(p_c)
             found = self.measure(self._skin, solver.bone)
             return np.concatenate([f.array_r, _stack(self.observer.state()).ravel(), gaps, [*found.values()]])
 
-        residual, skin, gaps, explicit = np.split(quotient(values, STEP), np.cumsum(sizes))
+        slopes = (values(STEP) - values(-STEP)) / (2 * STEP)
+        residual, skin, gaps, explicit = np.split(slopes, np.cumsum(sizes))
         return _Fixed(residual, skin.reshape(_stack(self._skin).shape), gaps, explicit)
 
     def _pressures(self, state: SurfaceState, part: float = 0.0) -> Array:
@@ -229,7 +239,7 @@ class Linearised:
         if known is not None:
             return np.asarray(known, dtype=float)
         touching = p_c > 0
-        by_part = quotient(lambda part: air_gaps(closure, p_c * (1 + part)), STEP)
+        by_part = quotient(lambda part: air_gaps(closure, p_c * (1 + part)), _OF_MOVE)
         return np.divide(by_part, p_c, out=np.zeros_like(p_c), where=touching)
 
     # -- along a change of the state -------------------------------------------------------------------
@@ -248,7 +258,7 @@ class Linearised:
         written = [(self._dd, dd)]
         share, d_eq = self.problem.interface.share, self.coupling.d_eq
         if self._ds is not None and share is not None:
-            written.append((self._ds, quotient(lambda part: share(d_eq * (1 + part)), STEP) / d_eq * dd))
+            written.append((self._ds, quotient(lambda part: share(d_eq * (1 + part)), _OF_MOVE) / d_eq * dd))
         surface = self.problem.surface
         for function, values in written:
             function.x.array[surface.pairs[:, 0]] = values[surface.ridge]
@@ -260,7 +270,7 @@ class Linearised:
         gap = _VALUES.index("gap")
         moved = np.abs(change[gap], where=skin[gap] < _NEAR, out=np.zeros_like(skin[gap])).max(initial=0.0)
         most = max(self.problem.mesh.comm.allgather(float(moved)))
-        step = min(_MOVE / most, STEP) if most > 0 else STEP
+        step = min(_MOVE / most, _OF_MOVE) if most > 0 else _OF_MOVE
         return quotient(lambda part: values(SurfaceState(*(skin + part * change)), part), step)
 
     # -- all numbers -----------------------------------------------------------------------------------
@@ -284,7 +294,9 @@ class Linearised:
         loop = np.eye(len(unit))
         if len(unit):
             closure_slope = self._closure_slope(self._pressures(self._skin))
-            loop = loop - closure_slope[:, None] * np.stack([self._along_skin(self._pressures, s) for s in skins], axis=1)
+            loop = loop - closure_slope[:, None] * np.stack(
+                [self._along_skin(self._pressures, s) for s in skins], axis=1
+            )
         found = {}
         for key, a in of_numbers.items():
             skin = fixed[key].skin + self._skin_along(a, none)

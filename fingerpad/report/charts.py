@@ -176,6 +176,20 @@ def _line(points: Any) -> str:
     return "".join(found)
 
 
+def elasticities(rows: Sequence[Any], of: str) -> Markup:
+    """Return elasticities as bars to both sides of zero.
+
+    Args:
+        rows: :class:`fingerpad.results.slopes.Row`, from the top.
+        of: what they are of, in words.
+    """
+    most = max(abs(row.elasticity) for row in rows)
+    middle, scale = _WIDTH * 0.65, _WIDTH * 0.22 / most
+    drawn = [(row, _ROW * k + 6, middle + min(row.elasticity * scale, 0.0), abs(row.elasticity) * scale)
+             for k, row in enumerate(rows)]  # fmt: skip
+    return render("slopes.svg", rows=drawn, middle=middle, width=_WIDTH, foot=_ROW * len(rows) + 4, of=of)
+
+
 def bars(kept: Mapping[str, Any], error: float, of: str, people: Mapping[str, Any]) -> Markup:
     """Return how far friction is solved and its likely ranges, with parts, as bars over a logarithmic scale.
 

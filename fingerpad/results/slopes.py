@@ -79,7 +79,9 @@ def dataset(result: ResultData, quantity: str = "mu_app", state: str = "") -> "x
         "lowest": "value down to which the same ridges touch, by straight extrapolation",
         "highest": "value up to which the same ridges touch, by straight extrapolation",
     }
-    data = {name: ("number", [getattr(row, name) for row in found], {"long_name": text}) for name, text in words.items()}
+    data = {
+        name: ("number", [getattr(row, name) for row in found], {"long_name": text}) for name, text in words.items()
+    }
     about = STEPS.get(quantity, Output(quantity, "")).about()
     units = ("number", [row.unit for row in found])
     return xarray.Dataset(data, {"number": [row.key for row in found], "unit": units}, {"quantity": quantity} | about)
