@@ -211,7 +211,7 @@ def test_command_prints_them(ran, tmp_path):
 
 
 def test_frictionless_contact_has_slopes():
-    """Of uncharged normal contact on half a finger: the bone sinks as its force grows, and nothing stands for friction."""
+    """Of uncharged normal contact on half a finger: the bone sinks as its force grows, and contact grows."""
     scene = from_data(NINE | {"f_ext": 1.0, "voltage": 0.0, "friction": 0.0, "output": LEAN, "numerics": EXACT})
     with no_pictures():
         result = fp.run(scene.replace(history=[{"name": "press", "f_ext": 1.0}]))

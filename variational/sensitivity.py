@@ -18,10 +18,9 @@ Woodbury: the ridges change K by a matrix of their number's rank. Rows that are 
 is prescribed.
 
 :math:`R_\theta` is a central difference quotient of R at fixed x and d: no step of Newton's method and no kink lies
-between, since points change neither contact nor direction while x stays. So are :math:`P_\theta, D_\theta`. Numbers that
-are of no layer change R on the skin alone. :math:`R_d` and the derivatives of the skin by x and d are UFL's. A quantity
-is a function of the values at the Gauss points, which are moved along their derivatives by some picometres: a
-difference quotient of fourth order.
+between, since points change neither contact nor direction while x stays. So are :math:`P_\theta, D_\theta`. Numbers
+of no layer change R on the skin alone. :math:`R_d` and the derivatives of the skin by x and d are UFL's. A quantity
+is a function of the values at the Gauss points, which are moved along their derivatives by some picometres.
 
 The derivative is that with the points in contact as they are. As a number changes, points come and go one by one, and
 the quantity is smooth between. A ridge that comes or goes makes a kink or a jump: :attr:`Slopes.up` and ``down``.
@@ -49,7 +48,7 @@ Array = NDArray[np.float64]
 STEP = 1e-5
 """Part of a number in difference quotients at fixed x; a bulk modulus changes by 25 times that of Poisson's ratio."""
 _OF_MOVE = 1e-3  # largest part of a change of the state, of the difference quotients of quantities
-_MOVE = 1e-11  # m, by which the augmented gap of a point near the contact moves in those of quantities
+_MOVE = 3e-12  # m, by which the augmented gap of a point near the contact moves in those of quantities
 _NEAR = 1e-7  # m, augmented gap of such a point at most
 _SLIPS = -0.5  # guess: a point whose trial traction is above half its limit slips on
 _HISTORY = {"anchor", "pressure", "x"}  # on which full slip does not depend
@@ -89,9 +88,8 @@ Measure = Callable[[SurfaceState, Array], Mapping[str, float]]
 
 
 def quotient(values: Callable[[float], Array], step: float) -> Array:
-    """Return the derivative at zero by a central difference quotient of fourth order."""
-    near, far = values(step) - values(-step), values(2 * step) - values(-2 * step)
-    return np.asarray((8 * near - far) / (12 * step))
+    """Return the derivative at zero by a central difference quotient."""
+    return np.asarray((values(step) - values(-step)) / (2 * step))
 
 
 def refuse(coupling: Coupling) -> None:
@@ -135,7 +133,7 @@ class _Fixed:
     gaps: Array
     """Of the closure's air gaps."""
     explicit: Array
-    """Of the quantities."""
+    """Of the quantities; empty where none depends on a number but by the skin."""
 
 
 class Linearised:
@@ -221,11 +219,10 @@ class Linearised:
             impose(self.coupling, varied(step))
             solver.equations.residual(solver.x, f, part)
             gaps = air_gaps(self.coupling.closure, p_c) if self._charged else np.zeros_like(p_c)
-            found = self.measure(self._skin, solver.bone)
+            found = self.measure(self._skin, solver.bone) if self.problem.interface.adhesion else {}  # else without
             return np.concatenate([f.array_r, _stack(self.observer.state()).ravel(), gaps, [*found.values()]])
 
-        slopes = (values(STEP) - values(-STEP)) / (2 * STEP)
-        residual, skin, gaps, explicit = np.split(slopes, np.cumsum(sizes))
+        residual, skin, gaps, explicit = np.split(quotient(values, STEP), np.cumsum(sizes))
         return _Fixed(residual, skin.reshape(_stack(self._skin).shape), gaps, explicit)
 
     def _pressures(self, state: SurfaceState, part: float = 0.0) -> Array:
@@ -322,7 +319,7 @@ class Linearised:
             return np.array([*self.measure(skin, self.solver.bone + part * bone).values(), *self._margins(skin)])
 
         found = self._along_skin(values, change)
-        by_step = dict(zip(names, map(float, found[: len(names)] + explicit), strict=True))
+        by_step = dict(zip(names, map(float, found[: len(names)] + (explicit if len(explicit) else 0.0)), strict=True))
         with np.errstate(divide="ignore", invalid="ignore"):
             ends = -self._margins(self._skin) / found[len(names) :]
         ends = ends[np.isfinite(ends)]
