@@ -73,8 +73,8 @@ class Solved:
         return found
 
     def slope(self, quantity, key):
-        """Return a slope for one whole of the number."""
-        return self.found.slopes[quantity][key] * self.found.values[key]
+        """Return a slope for one whole of the number's amount."""
+        return self.found.slopes[quantity][key] * abs(self.found.values[key])
 
 
 @cache
@@ -93,13 +93,13 @@ def test_slopes_are_those_of_whole_solves(voltage, key):
 def agree(mine, key, quantities):
     """Assert that slopes are those of whole solves a part of 2e-5 to both sides: in 1e-4 points come and go.
 
-    Tolerances of 1e-12 of the forces and 1e-11 of the air gaps leave 1e-7 of each quantity in the differences.
+    Tolerances of 1e-12 of the forces and 1e-11 of the air gaps leave up to 2e-7 of a quantity in the quotients.
     """
     h = 2e-5
     more, less = mine.at(key, h), mine.at(key, -h)
     for quantity in quantities:
         assert (more[quantity] - less[quantity]) / (2 * h) == pytest.approx(
-            mine.slope(quantity, key), rel=1e-6, abs=1e-7 * abs(more[quantity])
+            mine.slope(quantity, key), rel=1e-6, abs=3e-7 * abs(more[quantity])
         ), (key, quantity)
 
 
@@ -240,4 +240,4 @@ def test_what_has_no_slopes_is_refused(ran):
     with pytest.raises(SceneError, match="charged normal contact has no sensitivities: points stick"):
         result.sensitivities("mu_app", "charged")
     with pytest.raises(SceneError, match="run it with output.sensitivities=true"):
-        fp.run(from_data(NINE | {"f_ext": 1.0}), model="cylinders").sensitivities()
+        fp.run(model="cylinders").sensitivities()

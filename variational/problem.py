@@ -319,7 +319,12 @@ class Problem:
             raise ValueError("share is None before or now; it must be a function both times, or never")
         self._h_0.value = interface.h_0
         values: list[float] = []
-        interface.formulation.springs(replace(self._skin, constant=values.append))
+
+        def kept(value: float) -> float:
+            values.append(value)
+            return value
+
+        interface.formulation.springs(replace(self._skin, constant=kept))
         for constant, value in zip(self._springs, values, strict=True):
             constant.value = value
         self.interface = interface

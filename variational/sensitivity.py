@@ -225,8 +225,21 @@ class Linearised:
         residual, skin, gaps, explicit = np.split(quotient(values, STEP), np.cumsum(sizes))
         return _Fixed(residual, skin.reshape(_stack(self._skin).shape), gaps, explicit)
 
-    def _pressures(self, state: SurfaceState, part: float = 0.0) -> Array:
+    def _pressures(self, state: SurfaceState) -> Array:
         return self.observer.ridge_loads(state, self.coupling.by_gap).p_c
+
+    def _pressures_along(self, change: Array, dd: Array) -> Array:
+        """Return the derivative of the ridges' mean contact pressures along a change of the skin and of air gaps."""
+        d_eq, by_gap = self.coupling.d_eq, self.coupling.by_gap
+
+        def values(skin: SurfaceState, part: float) -> Array:
+            if by_gap:  # the length below the air gap depends on it
+                self.problem.set_air_gaps(d_eq + part * dd)
+            return self._pressures(skin)
+
+        found = self._along_skin(values, change)
+        self.coupling.set_air_gaps(d_eq)
+        return found
 
     def _closure_slope(self, p_c: Array) -> Array:
         """Return the derivative of the closure's air gaps (m/Pa)."""
@@ -291,14 +304,13 @@ class Linearised:
         loop = np.eye(len(unit))
         if len(unit):
             closure_slope = self._closure_slope(self._pressures(self._skin))
-            loop = loop - closure_slope[:, None] * np.stack(
-                [self._along_skin(self._pressures, s) for s in skins], axis=1
-            )
+            moved = [self._pressures_along(*pair) for pair in zip(skins, unit, strict=True)]
+            loop = loop - closure_slope[:, None] * np.stack(moved, axis=1)
         found = {}
         for key, a in of_numbers.items():
             skin = fixed[key].skin + self._skin_along(a, none)
             if len(unit):
-                dd = np.linalg.solve(loop, closure_slope * self._along_skin(self._pressures, skin) + fixed[key].gaps)
+                dd = np.linalg.solve(loop, closure_slope * self._pressures_along(skin, none) + fixed[key].gaps)
                 skin = skin + sum(d * each for d, each in zip(dd, skins, strict=True))
                 a = a + sum(d * b for d, b in zip(dd, B, strict=True))
             found[key] = self._slopes(a, skin, fixed[key].explicit)

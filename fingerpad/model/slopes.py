@@ -8,7 +8,7 @@ given their numbers. The shape of the finger is left out, whose numbers move the
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
@@ -67,6 +67,44 @@ def of_run(model: FingerModel, simulation: Simulation, states: Mapping[str, Any]
     return {SLOPES: {name: each.to_dict() for name, each in found.items()}}
 
 
+def numbers_of(model: FingerModel, finger: Finger, load_number: int) -> Numbers:
+    """Return the numbers of a model at the end of one of its loads, from 1, for a finger that stands where it is.
+
+    Raises:
+        ValueError: the load is one over time.
+    """
+    given = model.loads[:load_number]
+    pressed = [(load.f_ext, load.bone_height) for load in given if (load.f_ext, load.bone_height) != (None, None)]
+    levels = [0.0, *(load.level for load in given if load.voltage is not None)]
+    force, height = map(number_of, pressed[-1])
+    if (force is None and height is None) or levels[-1] is None:
+        raise ValueError("the state is one of a load over time, by whose numbers there are no slopes")
+    interface = replace(
+        finger.problem.interface, formulation=model.contact, friction=model.friction, h_0=model.h_0, share=model.share,
+        adhesion=model.adhesion,
+    )  # fmt: skip
+    control = Control(finger.solver.control.x, height, force or 0.0)
+    return Numbers(model.solids, interface, model.closure, control, float(levels[-1]))
+
+
+def quantities_of(finger: Finger, skin: SurfaceState, bone: Array) -> dict[str, float]:
+    """Return the quantities that have slopes; collective.
+
+    Args:
+        finger: whose skin it is.
+        skin: values at its points.
+        bone: translation of the bone (m), shape (2,).
+    """
+    loads, peaks = finger.observer.ridge_loads(skin), finger.observer.highest_pressures(skin)
+    if not finger.options.both_halves:
+        loads, peaks = loads.whole(), both_sides(peaks)
+    f_t, pull = -float(loads.f_friction.sum()), float(loads.f_attraction.sum())
+    f_ext = float(loads.f_contact.sum()) - pull - float(loads.f_adhesion.sum())
+    found = {"mu_app": f_t / f_ext, "f_t": f_t, "f_electrostatic": pull}
+    found |= {"contact_length": float(loads.length.sum()), "p_max": float(peaks.max())}
+    return found | ({"bone_height": float(bone[1])} if finger.solver.control.y is None else {"f_ext": f_ext})
+
+
 def state_slopes(model: FingerModel, finger: Finger, load_number: int) -> StateSlopes:
     """Return the slopes of the present state of a finger, which stays as it is; collective.
 
@@ -78,27 +116,7 @@ def state_slopes(model: FingerModel, finger: Finger, load_number: int) -> StateS
     coupling, control = finger.coupling, finger.solver.control
 
     def numbers(of: FingerModel) -> Numbers:
-        given = of.loads[:load_number]
-        forces = [(load.f_ext, load.bone_height) for load in given if (load.f_ext, load.bone_height) != (None, None)]
-        levels = [0.0, *(load.level for load in given if load.voltage is not None)]
-        force, height = map(number_of, forces[-1])
-        if force is None and height is None or levels[-1] is None:
-            raise ValueError("the state is one of a load over time, by whose numbers there are no slopes")
-        interface = replace(
-            finger.problem.interface, formulation=of.contact, friction=of.friction, h_0=of.h_0, share=of.share,
-            adhesion=of.adhesion,
-        )  # fmt: skip
-        return Numbers(of.solids, interface, of.closure, Control(control.x, height, force or 0.0), float(levels[-1]))
-
-    def quantities(skin: SurfaceState, bone: Array) -> dict[str, float]:
-        loads, peaks = finger.observer.ridge_loads(skin), finger.observer.highest_pressures(skin)
-        if not finger.options.both_halves:
-            loads, peaks = loads.whole(), both_sides(peaks)
-        f_t, pull = -float(loads.f_friction.sum()), float(loads.f_attraction.sum())
-        f_ext = float(loads.f_contact.sum()) - pull - float(loads.f_adhesion.sum())
-        found = {"mu_app": f_t / f_ext, "f_t": f_t, "f_electrostatic": pull}
-        found |= {"contact_length": float(loads.length.sum()), "p_max": float(peaks.max())}
-        return found | ({"bone_height": float(bone[1])} if control.y is None else {"f_ext": f_ext})
+        return numbers_of(of, finger, load_number)
 
     try:
         now = numbers(model)
@@ -106,7 +124,7 @@ def state_slopes(model: FingerModel, finger: Finger, load_number: int) -> StateS
         for mine, other in (held, (finger.voltage, now.voltage)):
             if not (other is not None and math.isclose(mine, other, rel_tol=_SAME)):
                 raise ValueError("the state is not one of the scene's last loads, by whose numbers there are no slopes")
-        linear = Linearised(coupling, quantities)
+        linear = Linearised(coupling, partial(quantities_of, finger))
     except ValueError as error:
         return StateSlopes(str(error))
     scales, varied, left_out = dict[str, float](), {}, dict[str, str]()
