@@ -1,23 +1,21 @@
 """What moves friction: exact slopes of the default and the fitted finger, beside whole solves, and how smooth they are.
 
-environment/run python3 -m benchmarks.sensitivities [--draw]
+environment/run python3 -m benchmarks.sensitivities     prints them; some 20 minutes
 
-Writes docs/sensitivities.json, and from it docs/sensitivities.md; some 20 minutes. On the final mesh of each run, at
-full slip, numbers of the scene are changed a little to both sides, and the state is solved for again as a whole.
+On the final mesh of each run, at full slip, numbers of the scene are changed a little to both sides, and the state is
+solved for again as a whole. Answers are kept in ``results/sensitivities``.
 """
 
-import argparse
 import json
 import sys
 import time
 from collections.abc import Mapping
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from benchmarks.harness import keep, kept, made, main, page, solve
+from benchmarks.harness import parser, solve
 
 DERJAGUIN = {"law": "Derjaguin", "mu_f": 0.2, "tau_0": 2e3}
 CASES: dict[str, Any] = {f"default, {volts:g} V": {"voltage": volts} for volts in (0.0, 100.0, 200.0)}
@@ -108,37 +106,29 @@ def chords(case: Mapping[str, Any]) -> dict[float, float]:
     return {step: (mu[step] - mu[-step]) / (2 * step) for step in mu if step > 0}
 
 
-def compute(args: argparse.Namespace) -> None:
-    """Compute and keep the numbers."""
-    found = solve("benchmarks.sensitivities", CASES, args.out, args.jobs, LIMIT)
-    keep("sensitivities", found, made(), args.docs)
-
-
-def draw(docs: Path) -> Path:
-    """Put the numbers in place in docs/sensitivities.md."""
-    return page(docs, "sensitivities", "python3 -m benchmarks.sensitivities", globals())
-
-
-def largest(case: str, count: int = 8) -> list[dict[str, Any]]:
-    """Return the numbers that move friction most in a case."""
-    numbers = kept("sensitivities").numbers[case]
-    return [row for row in numbers["rows"] if row["elasticity"]][:count]
-
-
-def worst(quantity: str) -> float:
-    """Return the largest relative distance of slopes from whole solves, of all cases."""
-    each = [found["apart"] for found in kept("sensitivities").numbers.values() if "apart" in found]
-    return max(abs(key[quantity]) for apart in each for key in apart.values())
-
-
-def _main() -> int:
+def main() -> int:
+    """Compute the cases that are missing, and print them; or one case, for :func:`benchmarks.harness.solve`."""
     if len(sys.argv) > 2 and not sys.argv[1].startswith("-"):
         import fingerpad.startup  # noqa: F401
 
         print(json.dumps(whole(json.loads(sys.argv[1]))))
         return 0
-    return main(__doc__, compute, draw, out="sensitivities")
+    args = parser(__doc__, "sensitivities").parse_args()
+    for name, case in solve("benchmarks.sensitivities", CASES, args.out, args.jobs, LIMIT).items():
+        if "failure" in case:
+            continue
+        print(
+            f"\n{name}: µ_app {case['mu_app']:.6g}, {case['unknowns']} unknowns; slopes took {case['seconds']:.3g} of "
+        )
+        print(f"{case['run']:.3g} processor s. Elasticities (% for 1 %), and the relative distance from whole solves:")
+        for row in case["rows"]:
+            apart = case["apart"].get(row["number"], {})
+            words = f"{apart['mu_app']:9.1e} {apart['contact_length']:9.1e}, {apart['points']} points" if apart else ""
+            print(f"  {row['number']:42s} {row['elasticity']:10.6f}  {words}")
+        if case["stairs"]:
+            print(f"  slope by the voltage {case['exact']:.4e} per V; between voltages {chords(case)}")
+    return 0
 
 
 if __name__ == "__main__":
-    sys.exit(_main())
+    sys.exit(main())
