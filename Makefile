@@ -73,9 +73,6 @@ fuzz:
 docs:
 	environment/docs build/docs
 
-pages:
-	$(run) python3 -m benchmarks.pages
-
 notebook:
 	$(run) python3 -m benchmarks.notebook $(or $(DEMO),first_run)
 
@@ -93,21 +90,9 @@ paper:
 measured:
 	$(run) python3 -m benchmarks.measured $(ROW)
 
-drive:
-	$(run) python3 -m benchmarks.drive
-
-fingers:
-	$(run) python3 -m benchmarks.fingers
-
-viscosity:
-	$(run) python3 -m benchmarks.viscosity
-
 loads:
 	$(run) python3 -m benchmarks.loads.fresh
 	$(run) python3 -m benchmarks.loads
-
-calibrate:
-	$(run) python3 -m benchmarks.calibrate
 
 calibration:
 	$(run) python3 -m benchmarks.two_meshes
@@ -116,5 +101,5 @@ chart:
 	$(run) python3 -m benchmarks.errors
 	$(run) python3 -m benchmarks.chart
 
-performance:
-	$(run) python3 -m benchmarks.performance
+calibrate drive fingers pages performance viscosity:
+	$(run) python3 -m benchmarks.$@

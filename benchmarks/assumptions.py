@@ -4,8 +4,7 @@ environment/run python3 -m benchmarks.assumptions [--jobs 2] [--missing] [--draw
 
 Full runs with errors, most of them at 75 N/m and with 20 um at the Merkel sites, on which friction hardly depends. Each
 row of the page is the command of one run; ``--missing`` runs those alone that docs/assumptions.json lacks. Writes
-docs/assumptions.json, docs/assumptions.md, and fingerpad/reduced/full_changes.json: ratios of µ_app by the full model
-and by charged cylinders, for the parts of a likely range.
+docs/assumptions.json and docs/assumptions.md.
 """
 
 import argparse
@@ -21,15 +20,12 @@ import numpy as np
 from benchmarks import harness
 from benchmarks.paper.friction import within
 from benchmarks.runs import Array, Run
-from fingerpad.reduced import closure_band, cylinders
-from fingerpad.results import files
 from fingerpad.results.quantities import plus_minus
 from fingerpad.runs.batch import Summary
 from fingerpad.scene import Scene, load
 from fingerpad.scene.reading import override
 from fingerpad.scene.remarks import coefficient
 
-_CHANGES = harness.ROOT / "fingerpad" / "reduced" / "full_changes.json"
 _MU_0 = coefficient(Scene()) or 0.0
 _LIMIT = 3600.0  # s of processor time for one run
 PAPER, NEAR, LEAST_GAP = 0.55, 0.05, 1.7e-6  # µ_app, what counts as equal to it; m
@@ -173,24 +169,6 @@ def compute(args: argparse.Namespace) -> None:
     if args.missing:
         by = replace(by, commit="", source=", ".join(dict.fromkeys([before.made.source, *by.source.split(", ")])))
     harness.keep("assumptions", found, by, args.docs)
-    files.replace(_CHANGES, harness.text(changes_of(found["full"])) + "\n")
-
-
-def changes_of(rows: Mapping[str, Mapping[str, float]]) -> dict[str, list[list[float]]]:
-    """Return the ratios of µ_app to that of the default, by part and change: of full runs, and of charged cylinders."""
-    tips, (more, less), (thin, thick) = [*PARAMETERS][:2], [*PARAMETERS][2:4], COATING
-    growth = rows["shear 75"]["mu_app"] / rows["shear 75, 0 V"]["mu_app"]
-    names = {"tips": tips, "roughness": [less, more], "coating": [thin, thick]}
-    full = {name: [rows[each]["mu_app"] / rows["reference"]["mu_app"] for each in row] for name, row in names.items()}
-    full[closure_band.LAW] = [growth / (rows["reference"]["mu_app"] / _MU_0)]
-    slip = cylinders.solve(Scene()).full_slip
-    assert slip is not None
-    here, closed = closure_band.friction(Scene(), slip, Scene().closure(), None).mu_app, dict[str, list[float]]()
-    for name, changed in closure_band.changes(Scene(), slip, None).items():
-        states = [closure_band.friction(each, slip, law, None, radius) for each, law, radius in changed]
-        closed[name] = [state.mu_app / here for state in states][-len(full[name]) :]
-    pairs = {name: zip(full[name], closed[name], strict=True) for name in closed}
-    return {name: [[round(a, 4), round(b, 4)] for a, b in each] for name, each in pairs.items()}
 
 
 # -- page ----------------------------------------------------------------------------------------------------

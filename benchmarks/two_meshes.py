@@ -14,7 +14,7 @@ takes its factors TWO and SITES from them; tests/test_calibration.py checks the 
 import argparse
 import json
 import sys
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -24,7 +24,6 @@ from mpi4py import MPI
 
 from benchmarks import harness
 from benchmarks.accuracy import drawn
-from benchmarks.errors import STATES, parted
 from fingerpad.accuracy.refinement import Refinement
 from fingerpad.accuracy.richardson import SITES, TWO, of_two_meshes, value
 from fingerpad.accuracy.solves import StateRecorder, solve_again
@@ -80,18 +79,15 @@ def _solve(scene: Scene) -> dict[str, Any]:
     sizes = model.coarser(final.mesh)
     coarse = next(solve for solve in refinement.found if solve.mesh == sizes)
     finer = solve_again(model.changed(mesh=final.mesh.scaled(0.5)), final.states, MPI.COMM_WORLD)
-    return {"path_is_coarse": model.mesh == sizes} | {
-        name: _summary(solve) for name, solve in zip(MESHES, (coarse, final, finer), strict=True)
-    }
+    return {name: _summary(solve) for name, solve in zip(MESHES, (coarse, final, finer), strict=True)}
 
 
 def _summary(solve: Solve) -> dict[str, Any]:
     """Return the parts of a solve's quantities, to seven digits, its facets where contact ends, and its cost."""
     parts = {name: np.vectorize(lambda v: float(f"{v:.7g}"))(part).tolist() for name, part in solve.parts().items()}
     facets = {name: float(f"{state.facet:.7g}") for name, state in solve.states.items()}
-    ridges = {name: state.state.ridges_in_contact for name, state in solve.states.items()}
     cost = {name: getattr(solve, name) for name in ("unknowns", "factorisations", "processor_seconds")}
-    return {"parts": parts, "facets": facets, "ridges": ridges} | cost
+    return {"parts": parts, "facets": facets} | cost
 
 
 # -- numbers -------------------------------------------------------------------------------------------------
@@ -118,13 +114,6 @@ class Case:
     covered = property(lambda self: self.known <= self.estimated)
     whole = property(lambda self: self.known * (2 if self.kind == "contact length" else 4 / 3))
     """The error that shrinks by ``known`` where it falls with its order: 1 for lengths, 2 for all else."""
-
-    @property
-    def words(self) -> str:
-        """Return the name in words."""
-        state, quantity = parted(self.name)
-        words = f"at ridge {quantity[4:]}, " if quantity.startswith("sed_") else ""
-        return f"{self.kind}, {words}{STATES[state]}"
 
 
 def _kind(name: str) -> str:
@@ -164,15 +153,6 @@ def coverage(known: Iterable[Case], kind: str = "") -> tuple[int, int]:
 
 
 # -- page ----------------------------------------------------------------------------------------------------
-def _rows(known: Sequence[Case]) -> list[Case]:
-    """Return the cases to list: of energy densities the worst of each state, and those that are not covered."""
-    worst: dict[tuple[str, str], Case] = {}
-    for case in (case for case in known if case.kind == "energy density"):
-        key = case.scene, parted(case.name)[0]
-        worst[key] = max(case, worst.get(key, case), key=lambda each: each.known)
-    return [case for case in known if case.kind != "energy density" or not case.covered or case in worst.values()]
-
-
 def draw(docs: Path) -> Path:
     """Draw the page from the kept numbers."""
     numbers = harness.kept("two_meshes", docs).numbers
@@ -184,9 +164,7 @@ def draw(docs: Path) -> Path:
         + (max((case for case in known if case.kind == kind), key=lambda case: case.known),)
         for kind in KINDS
     ]
-    names = {"known": known, "table": table, "rows": _rows(known), "scenes": solved(numbers)}
-    names["failed"] = {scene: solves["failure"] for scene, solves in numbers.items() if "failure" in solves}
-    names["coarse"] = [scene for scene, solves in solved(numbers).items() if solves["path_is_coarse"]]
+    names = {"known": known, "table": table, "scenes": solved(numbers)}
     return harness.page(docs, "two_meshes", "python3 -m benchmarks.two_meshes", globals() | names)
 
 

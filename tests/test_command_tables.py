@@ -8,7 +8,7 @@ import pytest
 import fingerpad as fp
 from fingerpad.cli import estimate, main, ranges, roughness, sweep
 from fingerpad.runs.sweep import sweep as run_sweep
-from fingerpad.scene import Scene, from_data, keys, load
+from fingerpad.scene import Scene, from_data, keys
 from fingerpad.scene.parameters import FORMULATIONS
 from tests.commands import ROOT, refused
 from tests.measures import rows_of
@@ -103,13 +103,6 @@ def test_microscale_table_is_the_closure():
 
 
 # -- params ------------------------------------------------------------------------------------------------
-def test_params_as_a_scene_is_the_default(tmp_path, capsys):
-    assert main(["params", "--toml"]) == 0
-    file = tmp_path / "scene.toml"
-    file.write_text(capsys.readouterr().out, encoding="utf-8")
-    assert load(file) == Scene()
-
-
 def test_every_key_is_listed():
     """Those that a scene writes down are among them, with a meaning, a unit where it has one, and a range."""
     found = keys.by_name(Scene)

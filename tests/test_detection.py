@@ -108,14 +108,14 @@ def test_thresholds_are_those_of_independent_code():
 # -- command ---------------------------------------------------------------------------------------------------------
 def test_command(capsys, tmp_path):
     """It prints measures, friction and thresholds, and writes its files."""
-    files = [tmp_path / name for name in ("drive.png", "thresholds.png", "thresholds.csv")]
-    words = [text for pair in zip(("--plot", "--thresholds", "--csv"), map(str, files), strict=True) for text in pair]
+    files = [tmp_path / name for name in ("drive.png", "thresholds.csv")]
+    words = [text for pair in zip(("--plot", "--csv"), map(str, files), strict=True) for text in pair]
     assert main(["drive", "--set", DRIVE, "--set", "electric.leak=300", "--frequency", "30, 60 Hz", *words]) == 0
     out = capsys.readouterr().out
     for text in ("amplitude 200 V, peak to peak 400 V, rms 141.4 V", "mean attraction", "60 Hz", "230 to 410"):
         assert text in out
     assert all(file.stat().st_size for file in files)
-    assert files[2].read_text(encoding="utf-8").splitlines()[0] == "frequency,sine,square_over_sine,square"
+    assert files[1].read_text(encoding="utf-8").splitlines()[0] == "frequency,sine,square_over_sine,square"
 
 
 @pytest.mark.parametrize(

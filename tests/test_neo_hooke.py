@@ -8,6 +8,7 @@ import ufl
 
 from benchmarks.verification.constitutive import Points
 from geometry import tags
+from tests.test_laws import Mine
 from tests.test_problem import D_EQ, H_0, check_jacobian, direction, disturb, make
 from variational.contact.interface import Interface
 from variational.contact.nitsche import Nitsche
@@ -49,17 +50,6 @@ def test_jacobian(square, element, formulation):
 
 
 # -- one's own -------------------------------------------------------------------------------------------------
-@dataclass(frozen=True)
-class Mine(Material):
-    """The least there is: numbers and an energy."""
-
-    shear_modulus: float
-    bulk: float
-
-    def energy(self, F):
-        return self.shear_modulus / 2 * (ufl.det(F) ** (-2 / 3) * ufl.inner(F, F) - 3)
-
-
 @dataclass(frozen=True)
 class Hencky(Material):
     """A solid without a volumetric part of its own: all of its energy is in one piece."""

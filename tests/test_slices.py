@@ -159,31 +159,9 @@ def test_result_from_its_file():
     bare = fp.Result(Scene(slices={"count": 8}), "full", None, None, None, finger=finger)
     again = fp.Result.from_xarray(bare.to_xarray()).finger
     assert again.flat() == finger.flat() and str(again) == str(finger)
-    assert again.under(0.2).flat() == finger.under(0.2).flat()
     slip = again.full_slip
     assert again.charged is None and slip.f_t == finger.values("full_slip")["f_t"]
     assert slip.error.f_t == finger.error["full_slip"]["f_t"]
-
-
-def test_finger_under_another_force_is_read_from_its_traces():
-    """The same as if the traces had been made for that force."""
-    finger = whole()
-    less = finger.under("200 mN")
-    direct = at_force(profile(Slices()), kept(200.0), 0.2, 8)
-    assert less.values("full_slip") == WholeFinger({"full_slip": direct}, "").values("full_slip")
-    assert less.f_ext == pytest.approx(0.2, rel=1e-12)
-    assert finger.under(0.5).values("full_slip") == finger.values("full_slip")
-    with pytest.raises(SceneError, match="give a trace to a larger force"):
-        finger.under(50.0)
-    with pytest.raises(SceneError, match="force is -1 N"):
-        finger.under(-1.0)
-    for none, words in ((None, "force is None; it must be"), (float("nan"), "force is nan"), ("0.3", "has no unit")):
-        with pytest.raises(SceneError, match=words):
-            finger.under(none)
-    with pytest.raises(SceneError, match="the finger has no trace of full slip"):
-        replace(finger, traces={}).under(0.3)
-    with pytest.raises(SceneError, match="the force is 0.0001 N, under which the centre of the finger bears"):
-        finger.under(1e-4)
 
 
 def test_footprint_has_a_panel_for_each_state(tmp_path):
@@ -230,11 +208,12 @@ def test_full_slip_alone_has_a_finger():
 
     Tolerance: the error that the estimate states, since away from the centre full slip has the contact of the press.
     """
-    found, own = slip_alone(), fp.run(model="cylinders")
+    found = slip_alone()
+    own = fp.run(fp.Scene(force=found.finger.f_ext), model="cylinders")
     assert list(found.finger.states) == ["full_slip"] and found.headline.quantity.name == "mu_app"
     error = found.finger.error["full_slip"]
     for name in ("f_t", "mu_app", "contact_area"):
-        mine, its = (each.finger.under(0.5).values("full_slip")[name] for each in (found, own))
+        mine, its = (each.finger.values("full_slip")[name] for each in (found, own))
         assert mine == pytest.approx(its, abs=error[name]) and error[name] < 0.05 * mine, name
     assert found.headline.of == "whole finger"
 

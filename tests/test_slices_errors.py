@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 import fingerpad as fp
-from benchmarks import newtons
 from fingerpad.report.run_page import page
 from fingerpad.results.dataset import _finger as finger
 from fingerpad.results.states import STATES
@@ -16,12 +15,10 @@ from fingerpad.runs.sweep_columns import row
 from fingerpad.scene.parameters import Slices
 from fingerpad.slices import errors
 from fingerpad.slices.correction import Pair, corrected, correction_errors, mesh_errors
-from fingerpad.slices.estimate import estimate
-from fingerpad.slices.finger import WholeFinger
 from fingerpad.slices.total import at_force, at_indentation, profile
 from fingerpad.slices.trace import NAMES, Trace, TraceError, trace
 from tests.measures import contact_state
-from tests.test_slices import foundation, kept, whole
+from tests.test_slices import foundation, whole
 from variational.state import ContactState, RidgeStates
 
 KEPT = Path(__file__).parents[1] / "docs"
@@ -112,17 +109,6 @@ def test_error_between_points_with_known_ridges_is_that_of_where_they_jump():
     assert np.all(np.array(change) < known) and np.mean(less) < 0.8 * np.mean(known)
 
 
-def test_error_of_a_smaller_force_covers_the_trace_of_more_points():
-    """Kept runs at eight forces, and every second of them with the last: forces below and between the points."""
-    of = kept(200.0)
-    half = of.halves()[0]
-    of_half = WholeFinger({"full_slip": at_force(FINGER, half, 0.5, 48)}, "", {}, {"full_slip": half})
-    for force in (0.05, 0.1, 0.3, 0.8):
-        less, full = of_half.under(force), at_force(FINGER, of, force, 48)
-        for key in ("f_t", "contact_area", "gross_area"):
-            assert abs(less.values("full_slip")[key] - full.values[key]) <= less.error["full_slip"][key], (force, key)
-
-
 def test_estimate_of_a_run_covers_the_traces_of_the_full_model():
     """Each kept estimate, with the largest errors of all."""
     found = json.loads((KEPT / "newtons.json").read_text())["numbers"]["estimates"]
@@ -134,23 +120,6 @@ def test_estimate_of_a_run_covers_the_traces_of_the_full_model():
         borne = each["f_ext_full"] + each["f_electrostatic_full"]
         friction = known["f_electrostatic"] * each["f_electrostatic_full"] / borne
         assert each["state"] == "charged" or abs(each["f_t"]) <= friction + 1e-6, each
-
-
-@pytest.mark.parametrize("share", [0.5, 0.2])
-def test_estimate_under_a_smaller_force_covers_the_traces_of_the_full_model(share):
-    """Read twice from a kept run at 100 N/m and 200 V, as in one go; errors grow away from its own force."""
-    scenes = json.loads((KEPT / "models.json").read_text())["numbers"]["scenes"]
-    press = newtons.states(scenes, "full", 0.0, "charged")[:6]
-    named = {state: newtons.states(scenes, "full", 200.0, state)[5] for state in ("charged", "full_slip")}
-    of = estimate(fp.Scene(f_ext=100.0), press, {"uncharged": press[-1]} | named)
-    less = of.under(0.8 * of.f_ext).under(share * of.f_ext)
-    assert less.error["full_slip"]["f_t"] == pytest.approx(of.under(less.f_ext).error["full_slip"]["f_t"], rel=1e-6)
-    for state in named:
-        values, error = less.values(state), less.error[state]
-        full = at_force(FINGER, newtons.kept(scenes, "full", 200.0, state), less.f_ext, 48).values
-        for key in ("f_electrostatic", "contact_area", "gross_area", "indentation"):
-            assert abs(values[key] - full[key]) <= error[key], (state, key)
-            assert error[key] / values[key] > of.error[state][key] / of.values(state)[key]
 
 
 def test_everything_that_is_printed_and_kept_has_the_whole_error():

@@ -15,7 +15,8 @@ from fingerpad.reduced import cylinders
 from fingerpad.reduced.closure_band import with_band
 from fingerpad.reduced.cylinder_errors import REGIONS, where, within
 from fingerpad.results.files import check_folder
-from fingerpad.results.quantities import KNOWN
+from fingerpad.results.headline import why_not_known
+from fingerpad.results.quantities import BAND
 from fingerpad.results.terminal import about
 from fingerpad.scene import Load, Scene, SceneError
 from fingerpad.scene.controls import ends_of
@@ -168,14 +169,12 @@ def too_short(scene: Scene) -> Iterator[str]:
 def _adhering(scene: Scene) -> Iterator[str]:
     """Yield that ridges adhere by the scene's closure, where the closed form has no friction for it."""
     try:
-        known = with_band(cylinders.solve(scene)).record.get(KNOWN, {})
+        band = with_band(cylinders.solve(scene)).record.get(BAND, {})
     except SceneError:
         return
-    if known and known["low"] is None:
-        why = ", ".join(dict.fromkeys(known["no_number"].values()))
+    if why := why_not_known(band):
         yield (
-            f"a run may follow many jumps and not reach full slip: by the closed form {why}; take a smaller voltage or "
-            "another roughness"
+            f"a run may follow many jumps and not reach full slip: {why}; take a smaller voltage or another roughness"
         )
 
 

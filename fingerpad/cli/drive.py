@@ -2,12 +2,11 @@
 
 import argparse
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 from fingerpad.cli import output
-from fingerpad.cli.arguments import PICTURE, Parser, changes, echo, quantities, refuse_twice, scene_of
+from fingerpad.cli.arguments import Parser, changes, echo, quantities, refuse_twice, scene_of
 from fingerpad.model.cautions import examine
 from fingerpad.reduced.detection import FREQUENCIES, REFERENCE_FREQUENCY, thresholds
 from fingerpad.results.quantities import Output
@@ -39,11 +38,10 @@ def main(argv: Sequence[str]) -> int:
     parser.add_argument("--column", metavar="NAME", help="its column of voltages, where it has several")
     parser.add_argument("--probe", type=_factor, metavar="FACTOR", help="factor on its voltages, as 100 of a 1:100 one")
     words = "picture: voltage, attraction and friction over a period, and the spectrum of friction"
-    parser.add_file("--plot", PICTURE, words, dest="period")
-    output.add_files(parser, _COLUMNS, "picture: relative thresholds over the frequency", "--thresholds")
+    output.add_files(parser, _COLUMNS, words)
     args = parser.read(argv)
     scene = _scene(args)
-    if args.period and scene.drive is None:
+    if args.plot and scene.drive is None:
         raise SceneError(
             f"--plot is given and voltage is {scene.volts:g} V; it must be a drive to be drawn over a period"
         )
@@ -62,10 +60,12 @@ def main(argv: Sequence[str]) -> int:
     if beyond:
         echo(f"Extrapolated, at {', '.join(beyond)} Hz: the component that decides is beyond the known thresholds.")
     echo("Thresholds are ± 3 dB, and of displacement; volts of a person do not follow from them.")
+
+    def draw(file: Path, _: object) -> None:
+        if found is not None:
+            found.plot(file)
+
     output.write_files(args, _COLUMNS, rows, draw)
-    if found is not None and args.period:
-        found.plot(args.period)
-        echo(f"Written: {args.period}")
     return 0
 
 
@@ -88,24 +88,3 @@ def _scene(args: argparse.Namespace) -> Scene:
         return scene_of(args, meshed=False)
     drive = {"waveform": "file", "file": args.file, "column": args.column, "probe": args.probe}
     return load(args.scene, changes(args.set) | {"voltage": drive})
-
-
-def draw(file: Path, rows: Sequence[Mapping[str, Any]]) -> None:
-    """Draw relative thresholds of a sine and a square over the frequency; extrapolated ones are open circles."""
-    with output.panels(file, "Voltage at the threshold of detection", 2) as (_, (ax, other)):
-        from fingerpad.results.pictures import style
-
-        curves = [("sine", style.BLUE, "o-", ax), ("square", style.VERMILION, "s--", ax)]
-        for name, colour, look, part in [*curves, ("square_over_sine", style.BLACK, "D-", other)]:
-            values = [row[name] for row in rows]
-            fills = ["none" if row["extrapolated"] else colour for row in rows]
-            part.loglog([row["frequency"] for row in rows], values, look[1:], color=colour, label=name)
-            for row, fill in zip(rows, fills, strict=True):
-                part.plot(row["frequency"], row[name], look[0], color=colour, mfc=fill, ms=5)
-        other.axhline(1.0, color=style.GREY, ls=":")
-        ax.set_ylabel(f"threshold over that of a sine at {REFERENCE_FREQUENCY:g} Hz (–)")
-        other.set_ylabel("threshold, square over sine (–)")
-        ax.legend(title="open: extrapolated")
-        for part in (ax, other):
-            part.set_xlabel("frequency (Hz)")
-            part.grid(alpha=0.3, which="both")

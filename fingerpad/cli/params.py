@@ -1,4 +1,4 @@
-"""``fingerpad params``: every key of a scene, as a table, a scene file with comments or a page."""
+"""``fingerpad params``: every key of a scene, as a table or a page."""
 
 import json
 import textwrap
@@ -13,7 +13,6 @@ from fingerpad.scene.messages import SceneError, clip
 _WIDTH = 120
 _EXAMPLES = """
     fingerpad params roughness
-    fingerpad params --toml > scene.toml
     fingerpad params --markdown > scene.md
 """
 _PAGE = """# Scene reference
@@ -36,14 +35,12 @@ def main(argv: Sequence[str]) -> int:
     """Print keys; return the exit code."""
     parser = Parser("params", _EXAMPLES)
     parser.add_argument("filter", nargs="?", default="", metavar="FILTER", help="keys with this in their name")
-    form = parser.add_mutually_exclusive_group()
-    form.add_argument("--toml", action="store_true", help="as a complete scene file of the defaults, with comments")
-    form.add_argument("--markdown", action="store_true", help="as a page: the scene reference")
+    parser.add_argument("--markdown", action="store_true", help="as a page: the scene reference")
     args = parser.read(argv)
     found = [key for key in every(Scene) if args.filter.lower() in key.name.lower()]
     if not found:
         raise SceneError(f"no key of a scene has {clip(args.filter)} in its name; fingerpad params lists all of them")
-    echo(toml(found) if args.toml else page(found) if args.markdown else table(found))
+    echo(page(found) if args.markdown else table(found))
     return 0
 
 
@@ -57,23 +54,6 @@ def table(found: Sequence[Key]) -> str:
 
 def _wrapped(key: Key, indent: str) -> str:
     return "\n".join(textwrap.wrap(key.meaning, _WIDTH, initial_indent=indent, subsequent_indent=indent))
-
-
-def toml(found: Sequence[Key]) -> str:
-    """Return a scene file of the defaults; keys without one, and those another choice would read, are comments."""
-    lines = ["# A scene of fingerpad with every key at its default. SI units; forces per metre of finger (N/m)."]
-    table = ""
-    for key in found:
-        where, _, name = key.name.rpartition(".")
-        if where != table:
-            table, many = where, where.endswith("[]")
-            plain = where.replace("[]", "")
-            lines += ["", f"# [[{plain}]]" if many else f"[{plain}]" if _read(found, where) else f"# [{plain}]"]
-        lines += _wrapped(key, "# ").splitlines()
-        off = key.default is None or bool(key.law) or not _read(found, where)
-        given = f"{'# ' * off}{name} ={'' if key.default is None else ' ' + _value(key.default)}"
-        lines.append(f"{given}  # {', '.join(filter(None, (key.unit, key.allowed)))}")
-    return "\n".join(lines)
 
 
 def page(found: Sequence[Key]) -> str:
@@ -91,12 +71,6 @@ def page(found: Sequence[Key]) -> str:
             cells = (f"`{key.name.rpartition('.')[2]}`", key.unit, default, key.allowed, key.meaning)
             lines.append(f"| {' | '.join(cells)} |")
     return "\n".join(lines)
-
-
-def _read(found: Sequence[Key], table: str) -> bool:
-    """Return whether a file of the defaults has a table: one with a value, in no list and in no value's place."""
-    given = any(key.default is not None for key in found if key.name.rpartition(".")[0] == table)
-    return "[]" not in table and given and all(key.name != table for key in found)
 
 
 def _default(key: Key) -> str:

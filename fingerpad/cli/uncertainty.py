@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from fingerpad.cli import output
 from fingerpad.cli.arguments import Parser, echo, scene_of
-from fingerpad.reduced.closure_band import LAW, changes, closures, friction
+from fingerpad.reduced.closure_band import closures, friction, laws_beside
 from fingerpad.reduced.people_band import Fingers, entering
 from fingerpad.results.headline import WHOLE
 from fingerpad.results.quantities import Output
@@ -42,7 +42,7 @@ POINTS = 256
 """Points of Sobol's sequence. There are as many fingers for each factor, and twice as many besides."""
 _SEED = 1  # of scrambling and of resampling
 _COATING = (0.8, 1.2)
-_PEOPLE, _MODELS, _COATED, _SOLUTION = "people", "rough contact", "coating", "solution"
+_PEOPLE, _MODELS, _LAW, _COATED, _SOLUTION = "people", "rough contact", "friction law", "coating", "solution"
 _OF_PEOPLE = f"{_PEOPLE}: "
 _PRESSURES = np.array([1e3, 1e5])  # Pa, at which two laws are the same
 _COLUMNS = tuple(Output(name, "", digits=2) for name in ("factor", "first", "first_error", "total", "total_error"))
@@ -83,15 +83,15 @@ class Study:
         own, self.result, self.laws = scene.closure(), result, [law]
         if why := friction(scene, slip, own, None).why:
             raise SceneError(f"friction at full slip is not known: by the scene's own roughness {why}")
-        for each, *_ in changes(scene, slip, None)[LAW]:
-            other: Any = each.friction_law()
+        for each in laws_beside(scene, slip):
+            other: Any = scene.model_copy(update={"friction": each}).friction_law()
             if not any(np.allclose(other.limit(_PRESSURES), one.limit(_PRESSURES), rtol=1e-3) for one in self.laws):
                 self.laws.append(other)
         models = closures(own) or {"its own model": own}
         self.missing = {name: why for name, law in models.items() if (why := friction(scene, slip, law, None).why)}
         self.closures = {name: law for name, law in models.items() if name not in self.missing}
         known = [_SOLUTION] if np.isfinite(result.headline.error) else []
-        self.names = [*entering(own), *([_MODELS, _COATED] if own.shared else []), LAW, *known]
+        self.names = [*entering(own), *([_MODELS, _COATED] if own.shared else []), _LAW, *known]
         self.count = self.lost = 0  # fingers that were computed, and those of them without a number
 
     def __call__(self, points: Array) -> Array:
@@ -103,7 +103,7 @@ class Study:
         result, head, mu_app = self.result, self.result.headline, np.empty(len(points))
         chosen = (
             np.minimum(len(of) * part.get(name, 0 * mu_app), len(of) - 1).astype(int)
-            for name, of in ((_MODELS, self.closures), (LAW, self.laws))
+            for name, of in ((_MODELS, self.closures), (_LAW, self.laws))
         )
         group = np.ravel_multi_index(tuple(chosen), (len(self.closures), len(self.laws)))
         for k, (model, law) in enumerate(itertools.product(self.closures.values(), self.laws)):

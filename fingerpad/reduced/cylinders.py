@@ -136,7 +136,7 @@ def solve(scene: Scene) -> Result:
     exact = "a closed form, without a mesh: no discretisation error but that of the contact length it is given"
     cautions, found = list[Caution](), dict[str, ContactState]()
     for state in STATES:
-        ((found[state], ridges[state]),) = _over_forces(scene, [scene.f_ext], state)
+        ((found[state], ridges[state]),) = _over_forces(scene, [scene.f_ext], state, (), SHEAR)
         cautions += _others(state, ridges[state])
     known = cylinder_errors.errors(scene.model_copy(update={"force": None}), found)
     cautions += cylinder_errors.cautions(scene, _pull(found["full_slip"]))
@@ -161,7 +161,6 @@ def over_forces(
     f_ext: Sequence[float],
     state: str,
     pressed: Sequence[ContactState] | Press = (),
-    tips: float = 1.0,
     shear: float = SHEAR,
 ) -> list[ContactState]:
     """Return a state of a scene under each of several external forces, computed together.
@@ -172,23 +171,21 @@ def over_forces(
         state: ``charged`` or ``full_slip``.
         pressed: states without voltage under these forces, or a press, whose contact it is; by default the finger's
             press.
-        tips: radius of the ridges' tips over that of the scene; Hertz's length grows with its root.
         shear: in place of :data:`SHEAR`.
 
     Raises:
         SceneError: as :func:`solve`, but for what is wrong with the other state alone.
     """
     check_supported(scene, Cylinders.name)
-    return [found for found, _ in _over_forces(scene, f_ext, state, pressed, tips, shear)]
+    return [found for found, _ in _over_forces(scene, f_ext, state, pressed, shear)]
 
 
 def _over_forces(
     scene: Scene,
     f_ext: Sequence[float],
     state: str,
-    pressed: Sequence[ContactState] | Press = (),
-    tips: float = 1.0,
-    shear: float = SHEAR,
+    pressed: Sequence[ContactState] | Press,
+    shear: float,
 ) -> list[tuple[ContactState, RidgeState]]:
     """Return the states of :func:`over_forces`, and those of a ridge."""
     own, force, law = pressed or press.of(scene), np.array(f_ext), scene.friction_law()
@@ -198,7 +195,7 @@ def _over_forces(
     def solved(left: Any = 1.0) -> tuple[NDArray[Any], list[RidgeState]]:
         """Return how many ridges are in contact, and their states, with a part of the press's contact left."""
         ridges = own.ridge_count(f_ext, state, left) if isinstance(own, Press) else given
-        return ridges, _ridges(scene, state, force / ridges, left * length / ridges, tips, shear)
+        return ridges, _ridges(scene, state, force / ridges, left * length / ridges, shear)
 
     left: Any = 1.0
     if isinstance(own, Press):
@@ -218,10 +215,10 @@ def _over_forces(
     return states
 
 
-def _ridges(scene: Scene, state: str, forces: Array, lengths: Array, tips: float, shear: float) -> list[RidgeState]:
+def _ridges(scene: Scene, state: str, forces: Array, lengths: Array, shear: float) -> list[RidgeState]:
     """Return the states of ridges under external forces (N/m), with lengths in contact (m) without voltage."""
-    tip, closure = tip_of(scene.geometry, lengths, tips), scene.closure()
-    moduli = tip.modulus(forces, tips ** (1 / tip.power) * lengths)
+    tip, closure = tip_of(scene.geometry, lengths), scene.closure()
+    moduli = tip.modulus(forces, lengths)
     voltage = scene.volts if scene.drive is None else scene.drive.effective
     try:
         ridge = Cylinder(tip, moduli, scene.h_0, closure, _stiffening(scene, state, shear))
@@ -259,13 +256,12 @@ def _others(state: str, ridge: RidgeState) -> list[Caution]:
     return [Caution("other_states", text, ridge.others[0])]
 
 
-def tip_of(finger: Fingertip, lengths: Array, tips: float = 1.0) -> Tip:
+def tip_of(finger: Fingertip, lengths: Array) -> Tip:
     """Return the tips of ridges about the lengths (m) of their contact without voltage.
 
     Args:
         finger: whose ridges they are.
         lengths: shape (loads,).
-        tips: radius of the tips over that of the finger.
 
     Raises:
         SceneError: a ridge has several crests, or one beside its middle.
@@ -279,9 +275,9 @@ def tip_of(finger: Fingertip, lengths: Array, tips: float = 1.0) -> Tip:
             "model 'full'"
         )
     if len(finger.ridge_profile) == 1:
-        return Round(tips * tip_radius(finger))
+        return Round(tip_radius(finger))
     depth, power = kernel(profiles.harmonics, finger.ridge_wavelength, lengths / 2)
-    return Power(power, depth, tips ** (1 / power) * lengths / 2)
+    return Power(power, depth, lengths / 2)
 
 
 def tip_radius(finger: Fingertip) -> float:

@@ -2,7 +2,7 @@
 
 import json
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,17 +10,14 @@ import numpy as np
 from markupsafe import Markup
 
 from fingerpad.report.page import render
-from fingerpad.results.headline import notes, span
 
 COLOURS = ("blue", "vermilion", "green", "purple", "orange", "ink")
 DASHES = ("", "6 3", "2 3", "8 3 2 3", "10 4")
 _WIDTH, _LEFT, _RIGHT, _TOP, _FOOT, _GAP = 560.0, 48.0, 16.0, 22.0, 42.0, 30.0  # px
 _MARGIN = 0.05  # of the span of values
 _TICK = 0.4  # half of the height of a spike
-_BEFORE, _AFTER, _ROW, _TIP = 112.0, 114.0, 26.0, 14.0  # px: names, numbers, rows and arrows of bars of errors
-_VALUES = (0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1, 1.5, 2, 3, 5, 10, 20, 50, 100)  # ticks of a logarithm
+_ROW = 26.0  # px, of a bar
 _BEND = 0.02  # px, between a point and the line of its neighbours that has it
-_APART, _SHORT = 34.0, 3.0  # px: two ticks; the shortest bar
 
 
 @dataclass(frozen=True)
@@ -188,44 +185,3 @@ def elasticities(rows: Sequence[Any], of: str) -> Markup:
     drawn = [(row, _ROW * k + 6, middle + min(row.elasticity * scale, 0.0), abs(row.elasticity) * scale)
              for k, row in enumerate(rows)]  # fmt: skip
     return render("slopes.svg", rows=drawn, middle=middle, width=_WIDTH, foot=_ROW * len(rows) + 4, of=of)
-
-
-def bars(kept: Mapping[str, Any], error: float, of: str, people: Mapping[str, Any]) -> Markup:
-    """Return how far friction is solved and its likely ranges, with parts, as bars over a logarithmic scale.
-
-    Args:
-        kept: the band, as a record has it, with its ``parts``.
-        error: of the solution; NaN where it is not known.
-        of: what the friction is of.
-        people: the range over people, as a record has it; without both ends none is drawn.
-    """
-    mu = kept["mu_app"]
-    solved = {"name": "solved to", "low": mu - error, "high": mu + error, "colour": "blue"}
-    parts = [solved] * (error < mu)
-    parts += [
-        {**kept, "name": "likely range", "colour": "vermilion"},
-        *([{**people, "name": "over people", "colour": "green"}] if people.get("high") else []),
-        *(each | {"colour": "soft"} for each in kept["parts"]),
-    ]
-    every = [part[key] for part in parts for key in ("low", "high", "at_least") if part.get(key) is not None]
-    least, most = _ends([math.log(value) for value in every], _MARGIN)
-
-    def at(value: float) -> float:
-        return _BEFORE + (_WIDTH - _BEFORE - _AFTER) * (math.log(value) - least) / (most - least)
-
-    ticks = list[tuple[float, str]]()
-    for value in _VALUES:
-        if least <= math.log(value) <= most and (not ticks or at(value) - ticks[-1][0] >= _APART):
-            ticks.append((at(value), f"{value:g}"))
-    rows = []
-    for k, part in enumerate(parts):
-        begin, end = at(part["low"]), _WIDTH - _AFTER if part["high"] is None else at(part["high"])
-        wide = max(end - begin - _TIP, 0.0) if part["high"] is None else max(end - begin, _SHORT)
-        rows.append({**part, "y": _ROW * k + 6, "x": begin, "end": end, "wide": wide, "span": span(part)})
-    said = ["Each grey bar has one assumption changed. The band takes these parts as independent."]
-    said += ["An arrow is an open end."] if kept["high"] is None else []
-    said += [note for part in kept["parts"] for note in notes(part)]
-    return render(
-        "bars.svg", rows=rows, ticks=ticks, at=at(mu), foot=_ROW * len(rows) + 4, tip=_TIP, of=of, width=_WIDTH,
-        before=_BEFORE - 8, after=_WIDTH - _AFTER + 8, said=" ".join(said),
-    )  # fmt: skip

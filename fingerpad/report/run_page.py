@@ -10,11 +10,11 @@ from markupsafe import Markup
 
 from fingerpad.report import page as html
 from fingerpad.report import trust
-from fingerpad.report.charts import Panel, Series, bars, chart, elasticities
+from fingerpad.report.charts import Panel, Series, chart, elasticities
 from fingerpad.report.frames import conditions_of, frames
 from fingerpad.results.over_time import NOTE, without_parts_of_jumps
 from fingerpad.results.printing import remarks, table, timed
-from fingerpad.results.quantities import KNOWN, STEPS, in_table
+from fingerpad.results.quantities import STEPS, in_table
 from fingerpad.results.result import Result
 from fingerpad.results.slopes import SLOPES, rows
 from fingerpad.results.spikes import Spikes
@@ -48,8 +48,7 @@ def page(result: Result) -> str:
     return html.page(
         "run.html", f"fingerpad: {headline.sentence}", result=result, headline=headline, factor=_factor(result),
         name="" if result.folder is None else result.folder.name, verdict=trust.verdict(found), findings=found,
-        sure=_claims(result), bars=bars_of(result), frames=shown, scale=scale, face=face,
-        slopes=_slopes(result),
+        sure=_claims(result), frames=shown, scale=scale, face=face, slopes=_slopes(result),
         newtons=None if result.finger is None else result.finger, numbers=table(result), remarks=remarks(result),
         asked=list(_asked(result)), of_path=_of_path(result), sliding=_sliding(result), over_time=timed(result),
         receptors=_receptors(result), spikes=spikes, raster=None if spikes is None else _raster(result, spikes),
@@ -72,15 +71,8 @@ def _factor(result: Result) -> str:
 def _claims(result: Result) -> list[str]:
     """Return sentences on how far the number is solved and known, without their points."""
     found = result.headline
-    known = (line.removesuffix(".") for line in (found.people, *found.known.splitlines(), found.remark))
+    known = (line.removesuffix(".") for line in (found.people, found.closures, found.remark))
     return [words for words in (found.solved, *known) if words]
-
-
-def bars_of(result: Result) -> Markup:
-    """Return the bars of a result's band; empty without one."""
-    found = result.headline
-    people = result.people if found.people else {}
-    return bars(result.record[KNOWN], found.error, found.of, people) if found.known else Markup()
 
 
 def _asked(result: Result) -> Iterator[tuple[str, ...]]:

@@ -8,7 +8,7 @@ from fingerpad.accuracy.richardson import FEW_FACETS
 from fingerpad.reduced.cylinder_errors import in_words
 from fingerpad.report.page import BAD, CARE, GOOD
 from fingerpad.results.headline import why_not_known
-from fingerpad.results.quantities import KNOWN
+from fingerpad.results.quantities import BAND
 from fingerpad.results.result import Result
 from fingerpad.results.states import called
 from variational.state import ContactState
@@ -16,7 +16,7 @@ from variational.state import ContactState
 _SMALL, _LARGE = 0.02, 0.1
 """Relative errors below which an error is small, and above which the mesh is too coarse for more than a trend."""
 
-_NO_ERROR = "The run did not estimate the error of its mesh. It is not in any ±, nor in the likely range."
+_NO_ERROR = "The run did not estimate the error of its mesh. It is not in any ±."
 
 
 class Finding(NamedTuple):
@@ -79,7 +79,7 @@ def _full_slip(result: Result) -> Iterator[Finding]:
 
 
 def _not_known(result: Result) -> Iterator[Finding]:
-    if why := why_not_known(result.record.get(KNOWN, {})):
+    if why := why_not_known(result.record.get(BAND, {})):
         yield Finding("friction is not known", BAD, f"{why[0].upper()}{why[1:]}.")
 
 

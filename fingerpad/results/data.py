@@ -10,7 +10,6 @@ from fingerpad.results import quantities
 from fingerpad.results.quantities import (
     BAND,
     FINGER,
-    KNOWN,
     MESH,
     MODEL,
     PENALTY,
@@ -134,15 +133,6 @@ class ResultData:
         friction or full slip, for a history, and for a closure of one's own.
         """
         return dict(self.record.get(BAND, {}).get("mu_app", {}))
-
-    @property
-    def known(self) -> dict[str, Any]:
-        """Band of µ_app at full slip over the scene's assumptions: ``low``, ``high`` and ``parts``, the largest first.
-
-        Each part has ``name``, ``low`` and ``high``. ``high`` is None where the upper end is open: a closure has no
-        number there; ``low`` too where it is the result's own one. Empty without friction under a voltage.
-        """
-        return dict(self.record.get(KNOWN, {}))
 
     @property
     def people(self) -> dict[str, Any]:

@@ -282,7 +282,7 @@ def _finger(whole: "WholeFinger | None") -> Variables:
 
 
 def _traces(whole: "WholeFinger") -> Variables:
-    """Return the traces of the cross-section along ``state`` and ``trace``, from which other forces are read."""
+    """Return the traces of the cross-section along ``state`` and ``trace``."""
     traces = [whole.traces.get(name) for name in STATES]
     columns = dict.fromkeys(name for trace in traces if trace is not None for name in trace.columns)
     own = {each.name: each for trace in whole.traces.values() for each in trace.own}

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from fingerpad.results.data import ResultData
-from fingerpad.results.quantities import FINGER, KNOWN, MESH, MODEL, PEOPLE, QUANTITIES, Output
+from fingerpad.results.quantities import BAND, FINGER, MESH, MODEL, PEOPLE, QUANTITIES, Output
 from fingerpad.results.states import LoadResult, called
 from fingerpad.scene.fingers import FINGERS
 from variational.state import ContactState
@@ -26,9 +26,6 @@ if TYPE_CHECKING:
 
 WHOLE, SECTION = "whole finger", "middle section"
 """What a headline is of."""
-_COUNTS = ("none", "one", "two", "three")
-_VARIANT = ", "  # before what a model of roughness is computed without
-_MODELS = "rough contact"
 _DIGITS = (2, 3, 4)  # of the numbers in a sentence: as few as tell them apart
 _ROUNDOFF = 1e-9  # by which a number is raised, so that one in the middle of two rounds up on every machine
 _NO_FORCE = 1e-9  # N/m or N, below which a force is roundoff
@@ -56,10 +53,10 @@ class Headline:
     """What the error is of."""
     ends: tuple[float, float] = (math.nan, math.nan)
     """Least and largest value (SI) over time, where the number is a range."""
-    known: str = ""
-    """The likely range of the number, a sentence a line; empty where there is none."""
     people: str = ""
     """Its likely range over people, a sentence; empty where there is none."""
+    closures: str = ""
+    """The number by the models of roughness, sentences; empty where there are none."""
     remark: str = ""
     """What a reader must know of the finger's name, a sentence; empty for none."""
 
@@ -101,7 +98,7 @@ class Headline:
         if self.number:
             lines.append(f"  {self.symbol} of the {self.of} {self.number}, {self.at}.")
         lines += [f"  {self.solved[0].upper()}{self.solved[1:]}."] if self.solved else []
-        more = (self.people, *self.known.splitlines(), self.remark)
+        more = (self.people, self.closures, self.remark)
         return "\n".join([*lines, *(f"  {line}" for line in more if line)])
 
 
@@ -116,7 +113,7 @@ def _of_result(result: ResultData) -> Headline:
         return _over_time(load, slip)
     whole = finger is not None and (slip is None or "full_slip" in finger.states)
     found = _of_states(result, finger if whole else None, slip)
-    if slip is not None and (why := why_not_known(result.record.get(KNOWN, {}))):
+    if slip is not None and (why := why_not_known(result.record.get(BAND, {}))):
         sentence = f"Friction {found.at}, is not known: {why}."
         return Headline(sentence, found.of, found.quantity, math.nan, found.at)
     return found
@@ -164,11 +161,12 @@ def _of_states(result: ResultData, finger: "WholeFinger | None", slip: ContactSt
         )
         at = f"in {called(name, charge)}"
     number, error, parts = result.number(name, key, whole)
-    kept, at = result.record.get(KNOWN, {}), f"{at}, {load} and {volts:.4g} V"
-    known = known_in_words(kept) if name == "full_slip" and kept and kept["whole"] == whole else ""
+    at, models = f"{at}, {load} and {volts:.4g} V", ""
+    if slip is not None and key == "mu_app":
+        models = band_in_words(result.record.get(BAND, {}), number / slip.mu_app)
     range_over = result.record.get(PEOPLE, {})
     people = people_in_words(range_over) if name == "full_slip" and range_over.get("whole") == whole else ""
-    return Headline(sentence, of, quantities[key], number, at, error, parts, known=known, people=people)
+    return Headline(sentence, of, quantities[key], number, at, error, parts, people=people, closures=models)
 
 
 def _over_time(load: LoadResult, slip: ContactState | None) -> Headline:
@@ -239,32 +237,22 @@ def _numbers(*values: float) -> Sequence[str]:
     return found
 
 
-# -- bands of friction, which :mod:`fingerpad.reduced.closure_band` computes -----------------------------------
-def band_in_words(kept: Mapping[str, Any]) -> str:
-    """Return a kept band over models of roughness in sentences; empty without one."""
-    if not kept:
+# -- ranges of friction ----------------------------------------------------------------------------------------
+def band_in_words(kept: Mapping[str, Any], ratio: float = 1.0) -> str:
+    """Return µ_app by models of roughness in sentences, ``ratio`` times that of the section; empty without one."""
+    found = {words: ratio * value for words, value in kept.get("mu_app", {}).items() if value is not None}
+    if not found:
         return ""
-    found = {words: value for words, value in kept["mu_app"].items() if value is not None}
     low, high = (pick(found, key=lambda words: found[words]) for pick in (min, max))
-    bounds = {words: share for words, share in kept.get("upper_bounds", {}).items() if words == high}
-    first = (
-        f"By models of rough contact µ_app of the middle section is {found[low]:.2f} ({low}) to {found[high]:.2f} "
-        f"({high}) at full slip."
-    )
-    last = "Which one holds for a finger is open (docs/microscale.md)."
-    return " ".join([first, *notes({**kept, "upper_bounds": bounds}), last])
-
-
-def known_in_words(kept: Mapping[str, Any]) -> str:
-    """Return a kept band over all assumptions, a sentence a line, the largest part first; empty without one."""
-    if not kept or kept["low"] is None:
-        return ""
-    opened = [_opened(part) for part in kept["parts"] if part["high"] is None]
-    parts = ", ".join(f"{part['name']} {span(part)}" for part in kept["parts"])
-    bounds = [note for part in kept["parts"] for note in notes({"upper_bounds": part.get("upper_bounds", {})})]
-    lacks = [f"Not in it: {', '.join(kept['not_known'])}, whose error is not known at this force."]
-    lines = ["; ".join([f"Likely range {span(kept)}", *opened]) + ".", f"With one assumption changed: {parts}."]
-    return "\n".join([*lines, *bounds, *(lacks if kept["not_known"] else [])])
+    lines = [f"By models of rough contact {found[low]:.2f} ({low}) to {found[high]:.2f} ({high})."]
+    reasons: dict[str, list[str]] = {}
+    for words, why in kept["no_number"].items():
+        reasons.setdefault(why, []).append(words)
+    lines += [f"No number by {' and '.join(those)}: {why}." for why, those in reasons.items()]
+    if high in kept["upper_bounds"]:
+        share = 100 * min(kept["upper_bounds"][high], 1.0)
+        lines += [f"The largest is an upper bound: attraction balances {share:.0f} % of the pressure in contact."]
+    return " ".join(lines)
 
 
 def people_in_words(kept: Mapping[str, Any]) -> str:
@@ -275,34 +263,8 @@ def people_in_words(kept: Mapping[str, Any]) -> str:
     return f"Likely range over people {kept['low']:.2f} to {high} (nine in ten)."
 
 
-def _opened(part: Mapping[str, Any]) -> str:
-    """Return of which changes of a part there is no upper end, and why, in words."""
-    every, why = part["no_number"], " and ".join(dict.fromkeys(part["no_number"].values()))
-    if part["name"] != _MODELS:
-        return f"no upper end with {' and '.join(every)}, where {why}"
-    count = _COUNTS[len({words.partition(_VARIANT)[0] for words in every})]
-    return f"no upper end by {count} of three models of rough contact, in which {why}"
-
-
 def why_not_known(kept: Mapping[str, Any]) -> str:
-    """Return why the result's own closure has no number, of a kept band over all assumptions; empty where it has."""
-    if not kept or kept["low"] is not None:
+    """Return why the result's own closure has no number, of a kept band over closures; empty where it has."""
+    if not kept or kept["mu_app"]:
         return ""
     return "; ".join(f"by {words} {why}" for words, why in kept["no_number"].items())
-
-
-def span(part: Mapping[str, Any]) -> str:
-    """Return the ends of a band or of a part; of an open one the end that has a number."""
-    return f"{part['low']:.2f} to {part['at_least'] if part['high'] is None else part['high']:.2f}"
-
-
-def notes(part: Mapping[str, Any]) -> list[str]:
-    """Return which changes of a part, or closures of a band, have no number, and which number is an upper bound."""
-    reasons: dict[str, list[str]] = {}
-    for words, why in part.get("no_number", {}).items():
-        reasons.setdefault(why, []).append(words)
-    return [f"No number by {' and '.join(those)}: {why}." for why, those in reasons.items()] + [
-        f"The largest number, by {words}, is an upper bound: attraction balances {100 * min(share, 1.0):.0f} % of the "
-        "pressure in contact."
-        for words, share in part.get("upper_bounds", {}).items()
-    ]

@@ -5,8 +5,7 @@ from collections.abc import Sequence
 
 from fingerpad import notebook
 from fingerpad.results.data import ResultData
-from fingerpad.results.headline import band_in_words
-from fingerpad.results.quantities import BAND, FRICTION, PER_LENGTH, QUANTITIES, plus_minus_of
+from fingerpad.results.quantities import FRICTION, PER_LENGTH, QUANTITIES, plus_minus_of
 from fingerpad.results.states import LoadResult, called
 from fingerpad.scene.reading import DEFAULT_MODEL
 from variational.state import ContactState
@@ -81,8 +80,6 @@ def remarks(result: ResultData) -> list[str]:
     share = math.nan if result.full_slip is None else result.full_slip.penalty.contact_length
     if not math.isnan(share):
         found.append(f"Penalty: a rigid screen would change the contact length at full slip by {1e3 * share:+.2g} mm.")
-    band = band_in_words(result.record.get(BAND, {}))
-    found += [band] if band else []
     return [*found, *([PER_LENGTH] if result.named else []), *result.notes]
 
 

@@ -327,8 +327,8 @@ SWEPT = in_table("sweep")
 FRICTION = in_table("slip")
 """Those that are printed at full slip alone."""
 CHANGES = {"error": "whole known error", "penalty": "estimated change for a rigid screen"}
-BAND, KNOWN, PEOPLE = "closures", "known", "people"
-"""Keys of the bands of friction in a record: over models of roughness, over all assumptions, and over people."""
+BAND, PEOPLE = "closures", "people"
+"""Keys of the bands of friction in a record: over models of roughness, and over people."""
 MESH, PENALTY, MODEL = "mesh", "penalty", "closed form"
 """Parts of the error of a section, in words; those of a whole finger are in :mod:`fingerpad.slices.errors`."""
 PER_LENGTH = (

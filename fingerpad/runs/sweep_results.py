@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from fingerpad import notebook
 from fingerpad.results import dataset
 from fingerpad.results.files import replace
-from fingerpad.results.quantities import CONDITIONS, FINGER, KNOWN, PER_LENGTH, RESULTS, Output, plus_minus_of
+from fingerpad.results.quantities import CONDITIONS, FINGER, PEOPLE, PER_LENGTH, RESULTS, Output, plus_minus_of
 from fingerpad.results.states import STATES, WORDS
 from fingerpad.runs import post
 from fingerpad.runs.sweep_columns import described, description, head_of, of_finger, printed, row, shown, tables
@@ -69,7 +69,7 @@ class Sweep:
         if isinstance(k, slice):
             return tuple(self[place] for place in range(len(self))[k])
         result = self.results[k]
-        return result if KNOWN in result.record else post.applied(result, [post.BANDS, post.PEOPLE])
+        return result if PEOPLE in result.record else post.applied(result, [post.BANDS, post.PEOPLE])
 
     @property
     def whole(self) -> bool:

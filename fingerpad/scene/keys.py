@@ -33,8 +33,6 @@ class Key:
     """What it may be besides, in words."""
     required: bool = False
     """Whether a table of its kind must give it."""
-    law: str = ""
-    """Law that reads it, where that is not the default one."""
 
     @property
     def unit(self) -> str:
@@ -116,8 +114,7 @@ def _of_law(table: str, key: LawKey, meaning: str) -> Iterator[Key]:
     for found, laws in readers.items():
         those = " and ".join([", ".join(laws[:-1]), laws[-1]] if laws[1:] else laws)
         alone = f" Of {those} alone." if several and len(laws) < len(key.kind.laws) else ""
-        of = "" if key.kind.name(type(default)) in laws else laws[0]
-        yield replace(found, meaning=found.meaning + alone, law=of)
+        yield replace(found, meaning=found.meaning + alone)
     for each in key.tables(type(default)):  # that a law may have, and the default law has not
         yield from (replace(k, default=None) for k in _of(each, f"{table}{each.__name__.lower()}.", None))
 

@@ -100,7 +100,7 @@ def _insulator(scene: Scene, factor: float) -> dict[str, Any]:
 
 
 def _roughness(scene: Scene, factor: float) -> dict[str, Any]:
-    """Return the rms height. *Assumption*: 20 %, as in the likely range; no spread between people was read."""
+    """Return the rms height. *Assumption*: 20 %; no spread between people was read."""
     if not hasattr(scene.roughness, "h_rms"):
         raise SceneError(f"roughness is {scene.roughness}; it must have an h_rms to differ between people")
     return {"roughness": {"h_rms": factor * scene.roughness.h_rms}}

@@ -18,7 +18,7 @@ from itertools import groupby
 
 import numpy as np
 
-from fingerpad.results.quantities import FINGER, MODEL, PENALTY, Output
+from fingerpad.results.quantities import FINGER, PENALTY, Output
 from fingerpad.slices.total import Array, Profile, Total, at_indentation
 from fingerpad.slices.trace import LEAST, Trace, gross_width
 from variational.state import ContactState
@@ -39,7 +39,7 @@ ESTIMATE = {
 """Largest errors of what a run estimates (:mod:`fingerpad.slices.estimate`) beside traces of the full model.
 
 Of the default finger at 25 to 120 N/m and 0 to 200 V; ``benchmarks/newtons.py`` keeps them in ``docs/newtons.json``.
-Those of the indentation are twice as large as there, because they grow the most under smaller forces (:func:`lighter`).
+Those of the indentation are twice as large as there, because they grow the most under smaller forces.
 """
 
 
@@ -75,26 +75,6 @@ def on_section(state: ContactState, shares: Mapping[str, float]) -> dict[str, fl
 def estimate(name: str, total: Total) -> dict[str, float]:
     """Return the relative errors of a run's estimate in a named state; none of its own press without voltage."""
     return _with_friction(ESTIMATE[name], total) if name in ESTIMATE else {}
-
-
-def lighter(carried: Mapping[str, dict[str, float]], total: Total, ratio: float) -> dict[str, dict[str, float]]:
-    """Return the parts of an error under another force, which itself is exact.
-
-    *Assumption*: those of the estimate, and of the coarser mesh, grow with the root of the ratio of forces, away from
-    the run's own state at the centre. ``tests/test_slices_errors.py`` compares kept runs with it.
-
-    Args:
-        carried: relative errors by part and quantity.
-        total: the sum under the other force.
-        ratio: force of these errors over that of the sum.
-    """
-    found = {part: {key: error for key, error in known.items() if key != "f_ext"} for part, known in carried.items()}
-    for part in (ESTIMATED, COARSE):
-        if part in found:
-            found[part] = {key: error * math.sqrt(ratio) for key, error in found[part].items()}
-    if ESTIMATED in found:
-        found[ESTIMATED] = _with_friction(found[ESTIMATED], total)
-    return found | ({MODEL: {}} if MODEL in found else {})  # known in a range of forces alone
 
 
 def of_model(known: dict[str, float], total: Total) -> dict[str, float]:

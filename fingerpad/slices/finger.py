@@ -1,20 +1,18 @@
 """The whole finger of a result: newtons and square millimetres by named state, their errors, and their source."""
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from types import SimpleNamespace
 
 from fingerpad import notebook
 from fingerpad.results.quantities import FINGER, FRICTION, MODEL, Output, plus_minus_of
 from fingerpad.results.states import STATES, WORDS, called
-from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.parameters import Slices
 from fingerpad.slices import errors
-from fingerpad.slices.total import RATIOS, Total, at_force, profile
+from fingerpad.slices.total import RATIOS, Total, profile
 from fingerpad.slices.trace import Trace
 
-_SAME_FORCE = 1e-9
 _PARTS = errors.MESH, errors.ESTIMATED, errors.COARSE
 _TITLE = "Whole finger, as a sum of slices"
 
@@ -31,7 +29,7 @@ class WholeFinger:
     """Relative errors by state, part and quantity that no trace gives: of the cross-section's mesh and penalty, of a
     run's estimate (:mod:`fingerpad.slices.errors`), and of a cheaper model, of which an empty part is not known."""
     traces: Mapping[str, Trace] = field(default_factory=dict)
-    """Of the cross-section by state, from which :meth:`under` reads other forces."""
+    """Of the cross-section by state."""
     shape: Slices = Slices()
     """The finger along its axis."""
 
@@ -77,37 +75,6 @@ class WholeFinger:
             there = there - {*RATIOS} | {*pairs}
             found[name] = {key: abs(share * total.values[key]) for key, share in shares.items() if key in there}
         return found
-
-    def under(self, force: float | str) -> "WholeFinger":
-        """Return the same finger under another force, from the same traces: at once, without a run.
-
-        Args:
-            force: in N, as a text such as ``"0.3 N"``, or as a quantity of pint. A trace reaches some percent beyond
-                the force that it was made for, and down to its first point at the centre of the finger.
-
-        Returns:
-            The finger with its errors; of a cheaper model without any, which are known in a range of forces alone.
-
-        Raises:
-            SceneError: no force, one that a trace does not reach, or a finger without traces.
-        """
-        value, finger = Scene(force=force).force, profile(self.shape)
-        if value is None:
-            raise SceneError("force is None; it must be a number in N, or a text such as '0.3 N'")
-        if missing := [WORDS[name] for name in self.states if name not in self.traces]:
-            raise SceneError(f"the finger has no trace of {missing[0]}, from which another force could be read; run it")
-        states = {name: at_force(finger, self.traces[name], value, self.shape.count) for name in self.states}
-        for name, total in states.items():
-            first = finger.centre_scale * float(self.traces[name].columns["f_ext"][0])
-            if total.centre < first * (1 - _SAME_FORCE):
-                raise SceneError(
-                    f"the force is {value:.4g} N, under which the centre of the finger bears {total.centre:.3g} N/m, "
-                    f"and its trace in {WORDS[name]} begins at {first:.3g} N/m; "
-                    "give a larger force, or run this one"
-                )
-        ratio = self.f_ext / value
-        carried = {name: errors.lighter(each, states[name], ratio) for name, each in self.carried.items()}
-        return replace(self, states=states, carried=carried)
 
     def values(self, name: str) -> dict[str, float]:
         """Return the quantities of a state: N, m², m, and the apparent friction coefficient."""

@@ -10,19 +10,16 @@ The equivalent air gap :math:`d_{eq}(\bar u)` follows from equating attractions 
 contact pressure p_c it is closed form, single valued and free of the voltage.
 """
 
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, ClassVar
+from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 import scipy  # its parts are imported where they are used first: to read a scene needs none
 from numpy.typing import ArrayLike, NDArray
 
-from variational.coefficients import OF_SCENE, Named, parameter, refuse_not_positive
-from variational.roughness.closure import PAST_THE_FOLD, STICKING, AirGap, Closure, Progress
+from variational.coefficients import parameter
+from variational.roughness.closure import PAST_THE_FOLD, STICKING, AirGap, RoughSurface
 from variational.roughness.gaps import Slopes, Statistics, breaking_gaps
-
-if TYPE_CHECKING:
-    from variational.roughness.topography import HeightMap
 
 Array = NDArray[np.float64]
 _EPS_0 = 8.854e-12  # F/m, Table 3
@@ -31,17 +28,9 @@ _REACH = 1.5  # of the attraction over the repulsion's decay length, up to which
 
 
 @dataclass(frozen=True)
-class BearingArea(Named, Closure):
-    """A self-affine Gaussian roughness on stratum corneum (Table 3); SI units."""
+class BearingArea(RoughSurface):
+    """A self-affine Gaussian roughness on stratum corneum (Table 3); h_0 is the range of the attraction; SI units."""
 
-    h_0: float = field(metadata=OF_SCENE)
-    """Effective insulator thickness (m), the range of the attraction."""
-    h_rms: float = parameter(1e-9, 1e-3, "m", default=3.1e-6)
-    """Root mean square height of the roughness (m)."""
-    wavelength: float = parameter(1e-8, 1e-2, "m", default=100e-6)
-    """Largest wavelength lambda_0 of the roughness (m); q_0 = 2 pi / lambda_0."""
-    young: float = parameter(1.0, 1e12, "Pa", default=1e6)
-    """Elastic modulus of the stratum corneum on the microscale (Pa)."""
     gamma: float = parameter(1e-2, 10.0, default=0.5)
     """Decay length of the repulsion, relative to h_rms; Persson's theory gives 0.4 to 0.5."""
     beta: float = parameter(1e-2, 100.0, default=1.0)
@@ -51,14 +40,6 @@ class BearingArea(Named, Closure):
     not follow d_eq to infinity. It must be below the pressure at zero separation."""
     shared: ClassVar[tuple[str, ...]] = ("h_0", "h_rms", "wavelength", "young", "p_floor")
     end: ClassVar[str] = "the pressure at zero separation"
-
-    def __post_init__(self) -> None:
-        """Refuse numbers that are no lengths and pressures.
-
-        Raises:
-            ValueError: one that is not finite and greater than 0; in one sentence.
-        """
-        refuse_not_positive(self)
 
     @property
     def full_pressure(self) -> float:
@@ -127,16 +108,10 @@ class BearingArea(Named, Closure):
         Raises:
             ValueError: a pressure outside of p_floor to full_pressure; in one sentence.
         """
-        p_c = np.asarray(p_c, dtype=float)
-        if (out := ~((p_c >= self.p_floor * (1 - 1e-9)) & (p_c <= self.full_pressure * (1 + 1e-9)))).any():
-            raise ValueError(
-                f"the contact pressure is {p_c[out].flat[0]:g} Pa; {type(self).__name__} has {self.p_floor:.4g} to "
-                f"{self.full_pressure:.4g} Pa"
-            )
-        p_c = np.clip(p_c, self.p_floor, self.full_pressure)
+        p_c = self.inside(p_c)
         u_bar, (d_eq, slope) = self.separation(p_c), self(p_c)
         assert slope is not None
-        per_pressure = -self.gamma * self.h_rms / p_c
+        per_pressure = np.asarray(-self.gamma * self.h_rms / p_c)
         narrows = -np.exp(-((u_bar / self.h_rms) ** 2) / 2) / (np.sqrt(2 * np.pi) * self.h_rms)
         square = (self.h_0 + d_eq) ** -2
         slopes = Slopes(narrows * per_pressure, per_pressure, -2 * square / (self.h_0 + d_eq) * slope, slope)
@@ -144,13 +119,6 @@ class BearingArea(Named, Closure):
         for low, high in breaking_gaps(voltage, self.h_0):
             broken += self.contact_area(u_bar - high) - self.contact_area(u_bar - low)
         return Statistics(self.contact_area(u_bar), u_bar, square, d_eq, broken, slopes)
-
-    @classmethod
-    def of_map(cls, measured: "HeightMap", progress: Progress | None = None) -> dict[str, float]:
-        """Return the parameters that a measured height map gives: see :func:`.spectrum.roughness_table`."""
-        from variational.roughness.spectrum import roughness_table
-
-        return roughness_table(measured)
 
     def state(self, p_c: float, voltage: float) -> str:
         """Return where a ridge is on the closure; empty where the air gap closes as the pressure rises.

@@ -13,12 +13,17 @@ Your own closure is one class, here a gap that no pressure changes::
 from abc import ABC, abstractmethod
 from collections import Counter, defaultdict
 from collections.abc import Callable, Sequence
-from typing import ClassVar, NamedTuple
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from variational.caution import Caution
+from variational.coefficients import OF_SCENE, Named, parameter, refuse_not_positive
+
+if TYPE_CHECKING:
+    from variational.roughness.topography import HeightMap
 
 Array = NDArray[np.float64]
 Progress = Callable[[int, int], None]
@@ -117,6 +122,52 @@ class Closure(ABC):
             )
             found.append(Caution("attraction_deforms", text, max(shares)))
         return found
+
+
+@dataclass(frozen=True)
+class RoughSurface(Named, Closure):
+    """A closure of self-affine Gaussian roughness on stratum corneum; SI units."""
+
+    h_0: float = field(metadata=OF_SCENE)
+    """Effective insulator thickness (m)."""
+    h_rms: float = parameter(1e-9, 1e-3, "m", default=3.1e-6)
+    """Root mean square height of the roughness (m)."""
+    wavelength: float = parameter(1e-8, 1e-2, "m", default=100e-6)
+    """Largest wavelength lambda_0 of the roughness (m); q_0 = 2 pi / lambda_0."""
+    young: float = parameter(1.0, 1e12, "Pa", default=1e6)
+    """Elastic modulus of the stratum corneum on the microscale (Pa)."""
+
+    def __post_init__(self) -> None:
+        """Refuse numbers that are no lengths and pressures.
+
+        Raises:
+            ValueError: one that is not finite and greater than 0; in one sentence.
+        """
+        refuse_not_positive(self)
+
+    @classmethod
+    def of_map(cls, measured: "HeightMap", progress: Progress | None = None) -> dict[str, Any]:
+        """Return the parameters that a measured height map gives; ``progress`` is called after each contact.
+
+        Raises:
+            ValueError: a map without roughness, or one that does not resolve it; in one sentence.
+        """
+        from variational.roughness.spectrum import roughness_table
+
+        return dict(roughness_table(measured))
+
+    def inside(self, p_c: ArrayLike) -> Array:
+        """Return mean contact pressures (Pa) as an array inside :attr:`pressures`, which they are up to roundoff.
+
+        Raises:
+            ValueError: a pressure outside; in one sentence.
+        """
+        p_c, (low, high) = np.asarray(p_c, dtype=float), self.pressures
+        if (out := ~((p_c >= low * (1 - 1e-9)) & (p_c <= high * (1 + 1e-9)))).any():
+            raise ValueError(
+                f"the contact pressure is {p_c[out].flat[0]:g} Pa; {type(self).__name__} has {low:.4g} to {high:.4g} Pa"
+            )
+        return np.asarray(np.clip(p_c, low, high), dtype=float)
 
 
 def air_gaps(closure: Closure, p_c: ArrayLike) -> Array:

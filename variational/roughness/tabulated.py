@@ -9,20 +9,17 @@ the many patches of a ridge; :meth:`TabulatedClosure.spread` has the scatter fro
 """
 
 from abc import abstractmethod
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 import scipy  # its parts are imported where they are used first: to read a scene needs none
 from numpy.typing import ArrayLike, NDArray
 
-from variational.coefficients import OF_SCENE, Named, parameter, refuse_not_positive
-from variational.roughness.closure import PAST_THE_FOLD, STICKING, AirGap, Closure, Progress
+from variational.coefficients import parameter
+from variational.roughness.closure import PAST_THE_FOLD, STICKING, AirGap, RoughSurface
 from variational.roughness.gaps import GapTable, Slopes, Statistics, breaking_gaps
-
-if TYPE_CHECKING:
-    from variational.roughness.topography import HeightMap
 
 Array = NDArray[np.float64]
 _EPS_0 = 8.854e-12  # F/m, Table 3
@@ -51,17 +48,9 @@ class _Curve:
 
 
 @dataclass(frozen=True)
-class TabulatedClosure(Named, Closure):
+class TabulatedClosure(RoughSurface):
     """A rough ridge whose gaps over pressure are a table; SI units."""
 
-    h_0: float = field(metadata=OF_SCENE)
-    """Effective insulator thickness (m)."""
-    h_rms: float = parameter(1e-9, 1e-3, "m", default=3.1e-6)
-    """Root mean square height of the roughness (m)."""
-    wavelength: float = parameter(1e-8, 1e-2, "m", default=100e-6)
-    """Largest wavelength lambda_0 of the roughness (m); q_0 = 2 pi / lambda_0."""
-    young: float = parameter(1.0, 1e12, "Pa", default=1e6)
-    """Elastic modulus of the stratum corneum on the microscale (Pa)."""
     shortest_wave: float = parameter(1e-10, 1e-2, "m", default=6.25e-6)
     """Shortest wavelength of the roughness (m) (*assumption*). Shorter waves lower the contact area and open the air
     gap a little."""
@@ -76,14 +65,6 @@ class TabulatedClosure(Named, Closure):
     end: ClassVar[str] = "the end of the table of gaps"
     extrapolates: ClassVar[bool] = False
 
-    def __post_init__(self) -> None:
-        """Refuse numbers that are no lengths and pressures.
-
-        Raises:
-            ValueError: one that is not finite and greater than 0; in one sentence.
-        """
-        refuse_not_positive(self)
-
     @abstractmethod
     def tables(self) -> list[tuple[float, GapTable]]:
         """Return tables of the surface, of the same pressures, and the part of each in the whole.
@@ -91,17 +72,6 @@ class TabulatedClosure(Named, Closure):
         Raises:
             ValueError: there is none for these parameters; in one sentence.
         """
-
-    @classmethod
-    def of_map(cls, measured: "HeightMap", progress: Progress | None = None) -> dict[str, Any]:
-        """Return the parameters that a measured height map gives; ``progress`` is called after each contact.
-
-        Raises:
-            ValueError: a map without roughness, or one that does not resolve it; in one sentence.
-        """
-        from variational.roughness.spectrum import roughness_table
-
-        return dict(roughness_table(measured))
 
     @property
     def unit_pressure(self) -> float:
@@ -166,12 +136,7 @@ class TabulatedClosure(Named, Closure):
         Raises:
             ValueError: a pressure outside of the table; in one sentence.
         """
-        p_c, (low, high) = np.asarray(p_c, dtype=float), self.pressures
-        if (out := ~((p_c >= low * (1 - 1e-9)) & (p_c <= high * (1 + 1e-9)))).any():
-            raise ValueError(
-                f"the contact pressure is {p_c[out].flat[0]:g} Pa; {type(self).__name__} has {low:.4g} to {high:.4g} Pa"
-            )
-        p_c = np.clip(p_c, low, high)
+        p_c = self.inside(p_c)
         x = np.log(p_c)
         curves = (np.array(curve(x)) for curve in (self._area, self._separation))
         (area, d_area), (u_bar, d_u) = ((np.exp(y), np.exp(y) * slope / p_c) for y, slope in curves)
