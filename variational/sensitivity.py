@@ -218,7 +218,8 @@ class Linearised:
         def values(step: float) -> Array:
             impose(self.coupling, varied(step))
             solver.equations.residual(solver.x, f, part)
-            gaps = air_gaps(self.coupling.closure, p_c) if self._charged else np.zeros_like(p_c)
+            closure = self.coupling.closure if self._charged else None
+            gaps = np.zeros_like(p_c) if closure is None else air_gaps(closure, p_c)
             found = self.measure(self._skin, solver.bone) if self.problem.interface.adhesion else {}  # else without
             return np.concatenate([f.array_r, _stack(self.observer.state()).ravel(), gaps, [*found.values()]])
 
@@ -245,12 +246,10 @@ class Linearised:
         """Return the derivative of the closure's air gaps (m/Pa)."""
         closure = self.coupling.closure
         assert closure is not None
-        known = closure(p_c).derivative
-        if known is not None:
+        if (known := closure(p_c).derivative) is not None:
             return np.asarray(known, dtype=float)
-        touching = p_c > 0
         by_part = quotient(lambda part: air_gaps(closure, p_c * (1 + part)), _OF_MOVE)
-        return np.divide(by_part, p_c, out=np.zeros_like(p_c), where=touching)
+        return np.divide(by_part, p_c, out=np.zeros_like(p_c), where=p_c > 0)
 
     # -- along a change of the state -------------------------------------------------------------------
     def _skin_along(self, dx: Array, dd: Array) -> Array:

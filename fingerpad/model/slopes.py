@@ -75,16 +75,16 @@ def numbers_of(model: FingerModel, finger: Finger, load_number: int) -> Numbers:
     """
     given = model.loads[:load_number]
     pressed = [(load.f_ext, load.bone_height) for load in given if (load.f_ext, load.bone_height) != (None, None)]
-    levels = [0.0, *(load.level for load in given if load.voltage is not None)]
+    level = [0.0, *(load.level for load in given if load.voltage is not None)][-1]
     force, height = map(number_of, pressed[-1])
-    if (force is None and height is None) or levels[-1] is None:
+    if (force is None and height is None) or level is None:
         raise ValueError("the state is one of a load over time, by whose numbers there are no slopes")
     interface = replace(
         finger.problem.interface, formulation=model.contact, friction=model.friction, h_0=model.h_0, share=model.share,
         adhesion=model.adhesion,
     )  # fmt: skip
     control = Control(finger.solver.control.x, height, force or 0.0)
-    return Numbers(model.solids, interface, model.closure, control, float(levels[-1]))
+    return Numbers(model.solids, interface, model.closure, control, float(level))
 
 
 def quantities_of(finger: Finger, skin: SurfaceState, bone: Array) -> dict[str, float]:
