@@ -287,7 +287,7 @@ class Linearised:
         """Return the derivatives by each number, and leave the state as it was, with the numbers at 0; collective."""
         self._skin = self.observer.state()
         none = np.zeros_like(self.coupling.d_eq)
-        unit = np.eye(len(none))[: len(none) if self._charged else 0]
+        unit = [np.eye(len(none))[k] for k in range(len(none) if self._charged else 0)]
         right, f = list[Array](), self.solver.layout.create_vector()
         for each in unit:
             self._set_gaps(each)
