@@ -51,13 +51,13 @@ def whole(scene: Mapping[str, Any]) -> dict[str, Any]:
         return slopes
 
     kept_slopes = solves.state_slopes
-    solves.state_slopes = compared
+    solves.state_slopes = compared  # type: ignore[assignment]
     begin = time.process_time()
     output = {"receptors": False, "sensitivities": True}
     result = fp.run(fp.Scene(**scene, output=output, numerics=NUMERICS))
     rest = time.process_time() - begin - found.get("compared", 0.0)
     rows = result.sensitivities().to_dataframe().reset_index()[["number", "value", "elasticity"]]
-    return found | {"run": rest, "rows": rows.to_dict("records"), "mu_app": result.full_slip.mu_app}
+    return found | {"run": rest, "rows": rows.to_dict("records"), "mu_app": result.number("full_slip", "mu_app").value}
 
 
 def _compared(model: Any, finger: Any, number: int, slopes: Any) -> dict[str, Any]:
