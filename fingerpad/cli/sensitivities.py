@@ -11,7 +11,6 @@ from fingerpad.results.result import Result
 from fingerpad.results.slopes import rows
 
 _EXAMPLES = """
-    fingerpad run --set output.sensitivities=true --out results/mine
     fingerpad sensitivities results/mine
     fingerpad sensitivities results/mine --of contact_length --csv slopes.csv --plot slopes.png
 """
