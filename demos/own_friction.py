@@ -7,7 +7,8 @@
 #
 # $$t_{max}(p) = \mu p + \tau_0 \frac{p}{\sqrt{p^2 + p_{reg}^2}}$$
 #
-# A law is one class with the limit t_max(p), written with arithmetic alone.
+# A law is one class with the limit t_max(p), written with arithmetic alone. The part of τ_0 goes with the area in
+# contact, whose ends lie within facets: `limit_over` gives it the share of the area.
 
 # %%
 import sys
@@ -32,6 +33,9 @@ class Mine(fp.Friction):
 
     def limit(self, p):
         return self.mu * p + self.tau_0 * p / (p**2 + self.p_reg**2) ** 0.5
+
+    def limit_over(self, part, *memory):
+        return self.mu * part.p + self.tau_0 * part.share(self.p_reg)
 
 
 # %% [markdown]

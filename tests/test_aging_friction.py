@@ -94,7 +94,7 @@ def test_growth_of_shear():
     found = {}
     for force in (0.05, 5.0):
         for held in (0.0, 20.0):
-            made = over(GrowingShear(mu_f=0.15, tau_0=10e3), body=load(MPI.COMM_WORLD, ridge(30e-6)))
+            made = over(GrowingShear(mu_f=0.15, tau_0=10e3), body=load(MPI.COMM_WORLD, ridge(10e-6)))
             made.continuation.run(Target("press", f_ext=force))
             made.continuation.run(Target("hold", f_ext=force, duration=held))
             made.continuation.run(Target("slide", bone_x=0.2e-3, duration=1e-3, until_full_slip=True))

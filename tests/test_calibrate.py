@@ -99,6 +99,14 @@ def test_rows_are_those_of_a_run():
     assert found["air gap (m)"] == pytest.approx(run.record["full_slip_d_eq"], rel=1e-3)  # interpolated in the trace
 
 
+def test_voltages_together_are_those_one_at_a_time():
+    """Traces of several voltages are computed at once; each is that of a table of its voltage alone, to roundoff."""
+    scene = fp.Scene(finger="fitted", force=0.5)
+    each = [table({}, grid=study.grid((0.2, 0.8), (volts,)), scene=scene) for volts in (0.0, 100.0, 200.0)]
+    one = pd.concat(each).sort_values(["force (N)", "voltage (V)"]).to_numpy()
+    assert table({}, scene=scene).to_numpy() == pytest.approx(one, rel=1e-7)
+
+
 def test_five_keys_are_found_without_noise():
     """Within 1 %, the claim, from starts that are a third to half away."""
     rows = study.table(

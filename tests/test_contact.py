@@ -193,4 +193,4 @@ def test_full_slip_is_one_way(body, pull, found):
     observer = Observer(make(body, MU_F).problem)
     state = observer.state()
     p_n = np.full_like(state.x, 1e4)
-    assert observer.slip(replace(state, p_n=p_n, t_t=MU_F * p_n * pull(state.x))) == found
+    assert observer.slip(replace(state, p_n=p_n, limit=MU_F * p_n, t_t=MU_F * p_n * pull(state.x))) == found

@@ -66,6 +66,12 @@ def test_length_has_the_error_of_the_facets_at_its_ends():
     )
 
 
+def test_friction_that_goes_by_the_area_has_the_error_of_lengths():
+    coarse, fine = {"full_slip_f_t": 39.0, "full_slip_mu_app": 0.39}, {"full_slip_f_t": 40.5, "full_slip_mu_app": 0.405}
+    found = of_two_meshes(coarse, fine, {"full_slip": (16e-6, 1e-6)}, by_area=True)
+    assert found == pytest.approx({"full_slip_f_t": TWO * 0.1, "full_slip_mu_app": TWO * 1e-3}, rel=1e-9)
+
+
 def test_site_that_changes_by_accident_less_than_others_has_half_their_error():
     """Of three sites, two change by 6 % of their densities and one does not. Other states do not count."""
     fine = {"charged_sed_0": 100.0, "charged_sed_1": 50.0, "charged_sed_2": 10.0, "full_slip_sed_0": 7.0}

@@ -8,7 +8,7 @@ import ufl
 from mpi4py import MPI
 
 from geometry import tags
-from geometry.bodies import block
+from geometry.bodies import block, ridge
 from geometry.mesh import load
 from tests import test_problem
 from variational.body import Body
@@ -20,6 +20,7 @@ from variational.contact.interface import Interface
 from variational.contact.nitsche import Nitsche
 from variational.contact.penalty import Penalty
 from variational.materials.ogden import Ogden
+from variational.resultants import Observer
 from variational.solvers.continuation import Target
 
 EPS_T = 1e11
@@ -113,13 +114,69 @@ def test_jacobian(square, formulation):
     """With points that stick and slip either way."""
     problem = test_problem.make(square, LAW, formulation=formulation)
     test_problem.disturb(problem)
-    move, before = test_problem.direction(problem), test_problem.states(problem)
+    move, before = test_problem.direction(problem, test_problem.NEAR / 4), test_problem.states(problem)
     assert before[2].any() and before[3].any()
     at = problem.w.x.array.copy()
     problem.w.x.array[:] = at + move
     assert (test_problem.states(problem) == before).all()
     problem.w.x.array[:] = at
     test_problem.check_jacobian(problem, move)
+
+
+# -- the area in contact ---------------------------------------------------------------------------------------
+SHEAR = Derjaguin(0.0, tau_0=12e3, p_reg=1.0)
+
+
+def beside_area(problem) -> float:
+    """Return the limit of friction of a ridge over tau_0 times its located length on unloaded skin, less 1."""
+    surface, state = problem.surface, Observer(problem).state()
+    x, y = surface.evaluate(surface.compile(list(ufl.SpatialCoordinate(problem.mesh))))
+    length = surface.sum_over_facets(surface.closed_length(x, y, state.gap))[0]
+    return float(surface.per_ridge(state.limit)[0] / (SHEAR.tau_0 * length) - 1)
+
+
+def test_shear_stress_goes_by_the_area_in_contact():
+    """Where a ridge at many depths ends within a facet, the error is of second order, without jumps.
+
+    A rate of 1.7 is that of three sizes with ends in other places of their facets. By points alone the error is up to
+    7 % on facets of 20 um, of first order.
+    """
+    worst = []
+    for size in (40e-6, 20e-6, 10e-6):
+        body = load(MPI.COMM_WORLD, ridge(size))
+        problem = test_problem.make(body, SHEAR, formulation=Penalty(1.5e12, 5e10))
+        errors = []
+        for depth in np.linspace(4e-6, 12e-6, 9):
+            problem.w.interpolate(lambda x, depth=depth: np.stack([0 * x[0], -depth + 30 * (x[0] - 1e-5) ** 2]))
+            errors.append(abs(beside_area(problem)))
+        worst.append(max(errors))
+    assert worst[1] < 1e-3
+    assert np.log2(worst[0] / worst[2]) / 2 > 1.7
+
+
+@pytest.mark.slow
+@pytest.mark.mpi
+def test_friction_of_a_shear_stress_is_its_area():
+    """Of a ridge that was slid, on facets of 20 um, with a p_reg that fades nothing; by points it is 4.6 % more.
+
+    Such friction took 239 factorisations in the slide; the limit is several times what it takes.
+    """
+    skin = {tags.STRATUM_CORNEUM: Ogden(86.76e3, -14.53, 0.48)}
+    body = load(MPI.COMM_WORLD, ridge(20e-6))
+    made = Body(body, skin, Interface(Penalty(1.5e12, 5e10), SHEAR, 1e-6), force_scale=3.3, touch_depth=1e-6)
+    made.continuation.run(Target("press", f_ext=3.3))
+    made.continuation.run(Target("slide", bone_x=0.3e-3, until_full_slip=True))
+    assert made.continuation.slip == (1.0, True)
+    assert abs(beside_area(made.problem)) < 1e-3
+    state = made.continuation.surface_state
+    assert -made.surface.per_ridge(state.t_t)[0] == pytest.approx(made.surface.per_ridge(state.limit)[0], rel=1e-7)
+    assert made.solver.counts.factorisations < 60
+
+
+@pytest.mark.parametrize(("law", "part"), [(Coulomb(0.25), 1.0), (SHEAR, 0.1), (None, 1.0)])
+def test_tangential_springs_are_softer_beside_a_law_that_goes_by_area(law, part):
+    assert EPS.beside(law).eps_t == pytest.approx(part * EPS.eps_t, rel=1e-15)
+    assert EPS.beside(law).eps_n == EPS.eps_n
 
 
 # -- a block ---------------------------------------------------------------------------------------------------
@@ -142,7 +199,7 @@ def slid(law, way: float, formulation: Formulation = EPS) -> Body:
     "formulation", [EPS, AugmentedLagrangian(1e12, 1e10, 5e-9), Nitsche(10.0, 0)], ids=lambda f: type(f).__name__
 )
 def test_full_slip_bears_both_parts(formulation, sign):
-    """f_T is mu times the contact force and the part of tau_0 of every point, against the motion, either way.
+    """f_T is mu times the contact force and tau_0 times the area, which points have to 1 %, against the motion.
 
     The bone bears it to the imbalances of some hundred nodes, points slip to roundoff of the limit.
     """
@@ -152,7 +209,7 @@ def test_full_slip_bears_both_parts(formulation, sign):
     assert made.continuation.slip == (1.0, True)
     fading = state.p_n / np.hypot(state.p_n, LAW.p_reg)
     adhesion = LAW.tau_0 * float(surface.per_ridge(fading)[0])
-    expected = LAW.mu_f * float(loads.f_contact[0]) + adhesion
-    assert float(loads.f_limit[0]) == pytest.approx(expected, rel=1e-12)
+    expected = float(loads.f_limit[0])
+    assert expected == pytest.approx(LAW.mu_f * float(loads.f_contact[0]) + adhesion, rel=0.01)
     assert float(loads.f_friction[0]) == pytest.approx(-sign * expected, rel=2 * CONE_ROUNDOFF)
     assert made.solver.reaction[0] == pytest.approx(-sign * expected, abs=1e-7 * FORCE)

@@ -85,7 +85,10 @@ def test_command(salib, tmp_path, capsys, monkeypatch):
     """People are first, and among them friction, as 50 % is to 20 %; the files have the table."""
     monkeypatch.setattr(indices, "__defaults__", (32,))
     words = ["uncertainty", "--set", "voltage=100", "--csv", f"{tmp_path}/a.csv", "--plot", f"{tmp_path}/a.png"]
+    shown = list[float]()
+    monkeypatch.setattr(uncertainty.Console, "phase", lambda _, text, part: shown.append(part))
     assert cli.main(words) == 0
+    assert shown[0] == 0 and shown == sorted(shown) and len(set(shown)) > 10
     rows = list(csv.DictReader((tmp_path / "a.csv").read_text().splitlines()))
     assert [row["factor"] for row in rows[:2]] == ["people", "people: friction"]
     assert {row["factor"] for row in rows} > {"rough contact", "friction law", "coating", "solution"}

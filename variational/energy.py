@@ -171,8 +171,8 @@ class EnergyBook:
         if law is None:
             return 0.0, 0.0
         # A point without pressure does not slip.
-        slip = np.where(b.p_n > 0, np.abs(self._problem.interface.formulation.slip(a, b)), 0.0)
+        slip = np.where(b.touching, np.abs(self._problem.interface.formulation.slip(a, b)), 0.0)
         integrate = self._problem.surface.per_ridge
-        found = law.dissipated(law.limit_in(a), law.limit_in(b), slip)
+        found = law.dissipated(a.limit, b.limit, slip)
         spent, unsure = (self._copies * float(integrate(each).sum()) for each in found)
         return spent, unsure

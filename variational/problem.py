@@ -189,10 +189,8 @@ class Problem:
         self._memory, self._x_before = (
             fem.Function(surface.history_space) if self._remembers else None for _ in range(2)
         )
-        attraction = interface.attraction
-        self.p_el = (
-            attraction.pressure(self.y, self.d_eq, self._shared_voltage, self._h_0) if attraction else ufl.zero()
-        )
+        law, by_area = interface.attraction, self._friction is not None and self._friction.by_area
+        self.p_el = law.pressure(self.y, self.d_eq, self._shared_voltage, self._h_0) if law else ufl.zero()
         normal = ufl.FacetNormal(mesh)
         self.area = kinematics.cofactor(F) * normal  # current per reference area, a vector
 
@@ -213,6 +211,7 @@ class Problem:
             self._memory,
             None if self._x_before is None else self.x - self._x_before,
             self.lapse,
+            surface.heights_along(self.y, self.w[1]) if by_area else (),
         )
         springs = interface.formulation.springs(self._skin)
         self.contact = Contact(self._skin, springs, self._friction, self.guess, self.ease)

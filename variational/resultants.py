@@ -77,8 +77,8 @@ class Observer:
             mirrored: see the attribute.
         """
         self.problem, self.surface, self.mirrored = problem, problem.surface, mirrored
-        c, area = problem.contact, problem.area
-        self.evaluated = [problem.x, problem.y, problem.opening, c.new_anchor, c.p_n, c.t_t, problem.p_el, *area]
+        c, place = problem.contact, [problem.x, problem.y, problem.opening]
+        self.evaluated = [*place, c.new_anchor, c.p_n, c.t_t, problem.p_el, *problem.area, c.limit]
         self._rules: dict[str, int] = {}  # of history: place among what is compiled
 
     def state(self) -> SurfaceState:
@@ -108,7 +108,7 @@ class Observer:
         return RidgeLoads(
             f_contact=integrate(s.p_n),
             f_friction=integrate(s.t_t),
-            f_limit=integrate(self.limit(s)),
+            f_limit=integrate(s.limit),
             f_attraction=-integrate(s.p_el * s.area_y),
             f_attraction_x=integrate(s.p_el * s.area_x),
             f_adhesion=-integrate(self.adhesion(s) * s.area_y),
@@ -120,14 +120,9 @@ class Observer:
         law = self.problem.interface.adhesion
         return np.zeros_like(state.y) if law is None else np.asarray(law.pressure(state.y))
 
-    def limit(self, state: SurfaceState) -> Array:
-        """Return the largest friction that the law allows (Pa of reference area) at this rank's points."""
-        law = self.problem.interface.friction
-        return np.zeros_like(state.p_n) if law is None else law.limit_in(state)
-
     def slip(self, state: SurfaceState) -> tuple[float, bool]:
         """Return the part of the contact points at the friction cone, and whether all slip one way."""
-        loaded, limit = state.p_n > 0, self.limit(state)
+        loaded, limit = state.touching, state.limit
         # The law gives plus or minus the limit where it slips; the factor covers roundoff alone.
         forth = loaded & (state.t_t >= limit * (1 - CONE_ROUNDOFF))
         back = loaded & (-state.t_t >= limit * (1 - CONE_ROUNDOFF))

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from variational import compat, jit
 
 Array = NDArray[np.float64]
+_PIECES = 8  # of the part of a facet that a point stands for, over each of which heights are taken as linear
 
 
 class Surface:
@@ -89,6 +90,33 @@ class Surface:
         self._to_bernstein = bernstein @ self._to_powers
         self._history_maps()
         self._reversed = self._point_order(nodes)
+
+    def heights_along(self, y, w_y) -> list:
+        """Return heights (m) from end to end of the part of its facet that each point stands for, evenly spaced; UFL.
+
+        The parts have the weights' lengths, one after the other. A Taylor series from the point leads to the heights,
+        which has no remainder where the displacement is quadratic along a facet.
+
+        Args:
+            y: current height (m).
+            w_y: the vertical displacement in it (m).
+        """
+        nodes, parts = self._nodes(), np.arange(_PIECES + 1) / _PIECES
+        element = basix.create_element(basix.ElementFamily.P, basix.CellType.interval, nodes.shape[1] - 1)
+
+        def places(xi: Array) -> Array:
+            return np.einsum("pk,fki->fpi", element.tabulate(0, xi[:, None])[0, :, :, 0], nodes)
+
+        space = fem.functionspace(self.mesh, ("Discontinuous Lagrange", len(self.weights) - 1, (len(parts), 2)))
+        ways, component = fem.Function(space), fem.Function(self.history_space)
+        for k, part in enumerate(parts):
+            way = places(np.cumsum(self.weights) - (1 - part) * self.weights) - places(self.points[:, 0])
+            for i in range(2):
+                self.set_history(component, way[:, :, i])
+                ways.x.array.reshape(-1, len(parts), 2)[:, k, i] = component.x.array
+        slope, bend = ufl.grad(w_y), ufl.grad(ufl.grad(w_y))
+        every = [ufl.as_vector([ways[k, 0], ways[k, 1]]) for k in range(len(parts))]
+        return [y + way[1] + ufl.dot(way, slope) + ufl.dot(way, bend * way) / 2 for way in every]
 
     def _nodes(self) -> Array:
         """Return the places (m) of each facet's ends and, of second order, its middle, shape (facets, 2 or 3, 2)."""

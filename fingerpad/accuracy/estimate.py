@@ -117,7 +117,9 @@ class Estimate:
         parts = fine.parts()
         if fine.mesh.receptor > RECEPTOR:  # of densities there is no estimate
             parts = {name: part for name, part in parts.items() if "_sed_" not in name}
-        self._two = of_two_meshes(coarse.parts(), parts, facets, self.degree, short=short)
+        law = self.model.friction
+        by_area = law is not None and law.by_area
+        self._two = of_two_meshes(coarse.parts(), parts, facets, self.degree, short=short, by_area=by_area)
         self.base, self.coarse = fine, coarse
 
     def _shares(self, name: str, error: float) -> dict[str, float]:

@@ -124,6 +124,7 @@ def of_two_meshes(
     safety: float = TWO,
     sites: float = SITES,
     short: bool = True,
+    by_area: bool = False,
 ) -> dict[str, float]:
     r"""Return the error of each quantity on the finer of two meshes, one with all elements twice as large, in its unit.
 
@@ -147,8 +148,10 @@ def of_two_meshes(
         safety: factor of safety s.
         sites: that part of the median.
         short: whether facets are shorter where contact ends than elsewhere.
+        by_area: whether friction goes with the area in contact, and so has the order and the ratio of lengths.
     """
-    found, first_order = {}, ("contact_length",) if short else tuple(in_table("edges"))
+    lengths = ("contact_length", "f_t", "mu_app") if by_area else ("contact_length",)
+    found, first_order = {}, lengths if short else tuple(in_table("edges"))
     for name in (name for name in fine if name in coarse):
         of_ends = name.endswith(first_order)
         state = next((prefix for prefix in facets if name.startswith(f"{prefix}_")), None)

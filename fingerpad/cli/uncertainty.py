@@ -16,6 +16,8 @@ et al. 2010, doi 10.1016/j.cpc.2009.09.018, by SALib (Herman and Usher 2017, doi
 import itertools
 import time
 from collections.abc import Callable, Sequence
+from contextlib import closing
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -26,9 +28,11 @@ from fingerpad.cli import output
 from fingerpad.cli.arguments import Parser, echo, scene_of
 from fingerpad.reduced.closure_band import closures, friction, laws_beside
 from fingerpad.reduced.people_band import Fingers, entering
+from fingerpad.results.folder import Serial
 from fingerpad.results.headline import WHOLE
 from fingerpad.results.quantities import Output
 from fingerpad.results.result import Result
+from fingerpad.results.terminal import Console
 from fingerpad.runs.solve import run
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.people import SPREADS
@@ -55,10 +59,11 @@ def main(argv: Sequence[str]) -> int:
     output.add_files(parser, _COLUMNS, "picture of the total indices")
     args = parser.read(argv)
     begin, result = time.perf_counter(), run(scene_of(args, meshed=False), model="cylinders")
-    study, head = Study(result), result.headline
-    rows = indices(study, [_PEOPLE if name in SPREADS else name for name in study.names])
-    place = next(k for k, row in enumerate(rows) if row["factor"] == _PEOPLE) + 1
-    each = [row for row in indices(study, study.names) if row["factor"] in SPREADS]
+    with closing(Console(Serial(), lines=False)) as console:  # type: ignore[arg-type]  # its rank
+        study, head = Study(result, partial(console.phase, "fingers by the closed form")), result.headline
+        rows = indices(study, [_PEOPLE if name in SPREADS else name for name in study.names])
+        place = next(k for k, row in enumerate(rows) if row["factor"] == _PEOPLE) + 1
+        each = [row for row in indices(study, study.names) if row["factor"] in SPREADS]
     rows[place:place] = [row | {"factor": _OF_PEOPLE + row["factor"]} for row in each]
     echo(f"Parts of the variance of ln {head.symbol} of the {head.of}, {head.at}, about {head.value:.3g}:")
     echo(output.text(_COLUMNS, rows))
@@ -71,8 +76,12 @@ def main(argv: Sequence[str]) -> int:
 class Study:
     """The fingers about a result of the closed form, as a function of numbers from 0 to 1: ``names`` of factors."""
 
-    def __init__(self, result: Result) -> None:
+    def __init__(self, result: Result, progress: Callable[[float], object] = float) -> None:
         """Find the models of roughness and the laws of friction that have a number.
+
+        Args:
+            result: of the closed form.
+            progress: takes the part of the fingers of :func:`main` that is done, from 0 on.
 
         Raises:
             SceneError: the result has no friction at full slip, or its own closure has no number.
@@ -92,6 +101,8 @@ class Study:
         self.closures = {name: law for name, law in models.items() if name not in self.missing}
         known = [_SOLUTION] if np.isfinite(result.headline.error) else []
         self.names = [*entering(own), *([_MODELS, _COATED] if own.shared else []), _LAW, *known]
+        self._progress = progress
+        self._every = POINTS * (5 + 2 * len(self.names) - len(entering(own)))  # of both analyses
         self.count = self.lost = 0  # fingers that were computed, and those of them without a number
 
     def __call__(self, points: Array) -> Array:
@@ -109,6 +120,7 @@ class Study:
         for k, (model, law) in enumerate(itertools.product(self.closures.values(), self.laws)):
             scene = result.scene.model_copy(update={"roughness": model, "friction": law})
             slip: Any = result.full_slip
+            self._progress((self.count + (group < k).sum()) / self._every)
             if (mine := group == k).any():
                 own = {name: each[mine] for name, each in factors.items()}
                 mu_app[mine] = Fingers(scene, slip, None, head.of == WHOLE, own).mu_app()

@@ -84,14 +84,26 @@ class Estimate:
             out[rows] = scipy.linalg.solve_triangular(factor, values[rows], lower=True)
         return out
 
+    @cached_property
+    def _products(self) -> Array:
+        """Products of Jacobian and residual over spreads, of each person, shape (people, parameters + 1, same)."""
+        both = np.column_stack([self.jacobian, self.data.y - self.fitted]) / self.data.spread[:, None]
+        return np.array([both[rows].T @ both[rows] for rows in self.data.people])
+
     def deviance(self, omega: Array, sigma: float, restricted: bool) -> float:
-        """Return -2 ln L of these variances at the best linear parameters; restricted, or of the whole likelihood."""
-        pull = (self.data.centre - self.theta) / self.data.width**2
-        m, g, total = np.eye(len(pull)) / self.data.width**2, pull.copy(), float(pull @ pull) * self.data.width**2
-        for rows, factor, both in self._of_people(omega, sigma):
-            j, r = np.hsplit(scipy.linalg.solve_triangular(factor, both, lower=True), [-1])
-            m, g, total = m + j.T @ j, g + j.T @ r[:, 0], total + float((r**2).sum())
-            total += 2 * float(np.log(np.diag(factor)).sum()) + len(rows) * math.log(2 * math.pi)
+        r"""Return -2 ln L of these variances at the best linear parameters; restricted, or of the whole likelihood.
+
+        By :math:`J^T V^{-1} = (\sigma^2 I + A \Omega)^{-1} J^T S^{-1}` with :math:`A = J^T S^{-1} J` of each person.
+        """
+        pull, products, n = (self.data.centre - self.theta) / self.data.width**2, self._products, len(self.data.y)
+        inner = np.eye(len(pull)) + products[:, :-1, :-1] * omega**2 / sigma**2
+        solved = np.linalg.solve(inner, products[:, :-1]) / sigma**2
+        m = np.eye(len(pull)) / self.data.width**2 + solved[..., :-1].sum(axis=0)
+        g = pull + solved[..., -1].sum(axis=0)
+        shifts = (products[:, :-1, -1] * omega**2 * solved[..., -1]).sum(axis=1)
+        squares = (products[:, -1, -1] - shifts) / sigma**2
+        total = float(pull @ pull) * self.data.width**2 + float((squares + np.linalg.slogdet(inner)[1]).sum())
+        total += n * math.log(2 * math.pi * sigma**2) + 2 * float(np.log(self.data.spread).sum())
         return total - float(g @ np.linalg.solve(m, g)) + restricted * float(np.linalg.slogdet(m)[1])
 
     def variances(self, restricted: bool = True) -> tuple[Array, float, float]:

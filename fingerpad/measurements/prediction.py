@@ -1,7 +1,8 @@
 r"""What the closed form answers for the rows of a table of whole fingers, at other values of a scene's keys.
 
 Each voltage has one trace of the cross-section per state (:mod:`fingerpad.slices.traces`), on which the force of each
-row is found. The air gap is that of the closure at the mean contact pressure of the finger's centre.
+row is found. Traces of constant voltages are computed together. The air gap is that of the closure at the mean contact
+pressure of the finger's centre.
 
 Keys of shape, layers and contact change the press of the finger (:mod:`fingerpad.reduced.press`). Rows y are power laws
 of them about the scene's own values :math:`k_0`, with exponents from two presses each, 25 % to either side:
@@ -22,8 +23,9 @@ from fingerpad.reduced.detection import thresholds
 from fingerpad.scene import Scene, value_of, with_values
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.parameters import centre_force
+from fingerpad.slices import traces
 from fingerpad.slices.total import BeyondTrace, Total, at_force, at_indentation, profile
-from fingerpad.slices.trace import Trace
+from fingerpad.slices.trace import Trace, trace
 from fingerpad.slices.traces import MARGIN
 
 Array = NDArray[np.float64]
@@ -33,6 +35,7 @@ _CLOSE, _STEPS = 1e-9, 8  # of the logarithm of a force; steps of the secant met
 _MORE, _FURTHEST = 1.5, 10.0  # of the largest force of a trace that is too short: a factor, and the largest one
 _PRESSED, _PART = ("geometry.", "materials.", "contact."), 0.25  # keys of a press, and part of a logarithm to a side
 _SUMS = {"friction force": "f_t", "gross area": "gross_area", "contact area": "contact_area"}
+_RATIO = {"threshold ratio"}  # the quantity without a trace
 _CONDITIONS = ["force", "voltage", "frequency", "state", "quantity"]
 
 
@@ -58,6 +61,7 @@ class ClosedForm:
         MODEL.check(scene)  # has its finger pressed
         of = rows.assign(state=[state_of(quantity, state) for quantity in rows.quantity])[_CONDITIONS]
         self._different = of.drop_duplicates(ignore_index=True)
+        self._groups = [*self._different.groupby(_CONDITIONS[1:4], dropna=False)]
         self._row = of.groupby(_CONDITIONS, dropna=False, sort=False).ngroup().to_numpy()
         self._depths, self._further, self.exponents = dict[Any, float](), 1.0, dict(known or {})
         for key in (key for key in keys if key.startswith(_PRESSED) and key not in self.exponents):
@@ -88,33 +92,55 @@ class ClosedForm:
             SceneError: the scene, or the closed form there, is refused.
         """
         found = np.empty(len(self._different))
-        for (voltage, frequency, state), group in self._different.groupby(_CONDITIONS[1:4], dropna=False):
-            driven = under(scene, voltage, frequency).model_copy(update={"force": None})
+        fingers = [under(scene, *key[:2]).model_copy(update={"force": None}) for key, _ in self._groups]
+        made = self._together(fingers)
+        for n, ((_, frequency, state), group) in enumerate(self._groups):
             totals = dict[float, tuple[Trace, Total]]()
             for k, force, quantity in zip(group.index, group.force, group.quantity, strict=True):
                 if quantity == "threshold ratio":
-                    found[k] = thresholds(driven, [frequency])[0].sine
+                    found[k] = thresholds(fingers[n], [frequency])[0].sine
                     continue
-                totals = totals or self._totals(driven, str(state), sorted(set(group.force), reverse=True))
-                found[k] = value(driven, quantity, *totals[force])
+                totals = totals or self._totals(fingers[n], state, sorted(set(group.force), reverse=True), made.get(n))
+                found[k] = value(fingers[n], quantity, *totals[force])
         return np.asarray(np.log(found))[self._row]
 
-    def _totals(self, scene: Scene, state: str, forces: Sequence[float]) -> dict[float, tuple[Trace, Total]]:
-        """Return the finger under forces (N), the largest first, with the trace."""
-        expected, largest = (centre_force(force, scene.geometry.width) for force in (forces[-1], forces[0]))
+    def _together(self, fingers: Sequence[Scene]) -> dict[int, Trace]:
+        """Return the traces of groups with a constant voltage, by number, those of one state computed together."""
+        found = dict[int, Trace]()
+        for state in ("charged", "full_slip"):
+            of = [n for n, (key, group) in enumerate(self._groups) if key[2] == state and set(group.quantity) - _RATIO]
+            same = [n for n in of if fingers[n].drive is None]
+            grids = [traces.grid(*self._ends(fingers[n], self._groups[n][1].force)) for n in same]
+            volts = [fingers[n].volts for n, grid in zip(same, grids, strict=True) for _ in grid]
+            if len(same) > 1:
+                states = cylinders.over_forces(fingers[same[0]], np.concatenate(grids), state, voltage=volts)  # type: ignore[arg-type]
+                parts = iter(cylinders.press.of(fingers[0]).lowered(states, state))
+                wave = fingers[0].geometry.ridge_wavelength
+                found |= {n: trace([next(parts) for _ in grid], wave) for n, grid in zip(same, grids, strict=True)}
+        return found
+
+    def _ends(self, scene: Scene, forces: Sequence[float]) -> tuple[float, float]:
+        """Return the expected force (N/m) and the largest of the trace for forces (N)."""
+        expected, largest = (centre_force(force, scene.geometry.width) for force in (min(forces), max(forces)))
+        return expected, self._further * MARGIN * largest
+
+    def _totals(
+        self, scene: Scene, state: str, forces: Sequence[float], made: Trace | None
+    ) -> dict[float, tuple[Trace, Total]]:
+        """Return the finger under forces (N), the largest first, with the trace, which may be made already."""
         while True:
-            top = self._further * MARGIN * largest
-            trace, found = MODEL.of_points(scene, cylinders.solve, state, expected, top).trace, {}
+            made = made or MODEL.of_points(scene, cylinders.solve, state, *self._ends(scene, forces)).trace
+            found = dict[float, tuple[Trace, Total]]()
             try:
                 for force in forces:
                     place = (scene.volts, state, force)
-                    found[force] = (trace, _under_force(scene, trace, force, self._depths.get(place)))
+                    found[force] = (made, _under_force(scene, made, force, self._depths.get(place)))
                     self._depths[place] = math.log(found[force][1].delta)
                 return found
             except BeyondTrace:
                 if self._further > _FURTHEST:
                     raise
-                self._further *= _MORE
+                self._further, made = self._further * _MORE, None
 
 
 def _under_force(scene: Scene, trace: Trace, force: float, x: float | None) -> Total:

@@ -168,9 +168,9 @@ class FingerModel:
         self.mesh_file = None if scene.geometry.file is None else Path(scene.geometry.file)
         self.mesh_sha256 = scene.geometry.file_sha256
         self.solids = scene.solids()
-        self.contact: Formulation = scene.contact.law
-        self.by_gap = scene.contact.length == "gap"
         self.friction = scene.friction_law()
+        self.contact: Formulation = scene.contact.law.beside(self.friction)
+        self.by_gap = scene.contact.length == "gap"
         self.adhesion = scene.adhesion if adheres(scene.adhesion) else None
         self.closure = scene.closure() if options.voltage else None
         self.h_0 = scene.h_0

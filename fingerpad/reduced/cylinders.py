@@ -30,6 +30,7 @@ The model leaves out that ridges in the middle bear more than those at the edge,
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -162,6 +163,7 @@ def over_forces(
     state: str,
     pressed: Sequence[ContactState] | Press = (),
     shear: float = SHEAR,
+    voltage: Sequence[float] | None = None,
 ) -> list[ContactState]:
     """Return a state of a scene under each of several external forces, computed together.
 
@@ -172,12 +174,13 @@ def over_forces(
         pressed: states without voltage under these forces, or a press, whose contact it is; by default the finger's
             press.
         shear: in place of :data:`SHEAR`.
+        voltage: of each force (V), in place of the scene's.
 
     Raises:
         SceneError: as :func:`solve`, but for what is wrong with the other state alone.
     """
     check_supported(scene, Cylinders.name)
-    return [found for found, _ in _over_forces(scene, f_ext, state, pressed, shear)]
+    return [found for found, _ in _over_forces(scene, f_ext, state, pressed, shear, voltage)]
 
 
 def _over_forces(
@@ -186,6 +189,7 @@ def _over_forces(
     state: str,
     pressed: Sequence[ContactState] | Press,
     shear: float,
+    voltage: Sequence[float] | None = None,
 ) -> list[tuple[ContactState, RidgeState]]:
     """Return the states of :func:`over_forces`, and those of a ridge."""
     own, force, law = pressed or press.of(scene), np.array(f_ext), scene.friction_law()
@@ -195,7 +199,7 @@ def _over_forces(
     def solved(left: Any = 1.0) -> tuple[NDArray[Any], list[RidgeState]]:
         """Return how many ridges are in contact, and their states, with a part of the press's contact left."""
         ridges = own.ridge_count(f_ext, state, left) if isinstance(own, Press) else given
-        return ridges, _ridges(scene, state, force / ridges, left * length / ridges, shear)
+        return ridges, _ridges(scene, state, force / ridges, left * length / ridges, shear, voltage)
 
     left: Any = 1.0
     if isinstance(own, Press):
@@ -207,19 +211,22 @@ def _over_forces(
             left = own.left(law.limit, force, pulled, touching)
     ridges, found = solved(left)
     states = []
-    for each, count, ridge in zip(f_ext, ridges, found, strict=True):
+    volts = [scene.voltage] * len(found) if voltage is None else voltage
+    for each, count, ridge, own_volts in zip(f_ext, ridges, found, volts, strict=True):
         sums = {"f_contact": ridge.f_contact, "f_electrostatic": ridge.f_attraction, "contact_length": ridge.length}
         contact = {name: int(count) * value for name, value in sums.items()} | {"ridges_in_contact": int(count)}
-        under = scene.model_copy(update={"f_ext": float(each)})
+        under = scene.model_copy(update={"f_ext": float(each), "voltage": own_volts})
         states.append((reduced_state(under, contact, state == "full_slip"), ridge))
     return states
 
 
-def _ridges(scene: Scene, state: str, forces: Array, lengths: Array, shear: float) -> list[RidgeState]:
+def _ridges(
+    scene: Scene, state: str, forces: Array, lengths: Array, shear: float, volts: Sequence[float] | None
+) -> list[RidgeState]:
     """Return the states of ridges under external forces (N/m), with lengths in contact (m) without voltage."""
     tip, closure = tip_of(scene.geometry, lengths), scene.closure()
     moduli = tip.modulus(forces, lengths)
-    voltage = scene.volts if scene.drive is None else scene.drive.effective
+    voltage: Any = volts or (scene.volts if scene.drive is None else scene.drive.effective)
     try:
         ridge = Cylinder(tip, moduli, scene.h_0, closure, _stiffening(scene, state, shear))
         return ridge.under_loads(forces, voltage)
@@ -256,6 +263,9 @@ def _others(state: str, ridge: RidgeState) -> list[Caution]:
     return [Caution("other_states", text, ridge.others[0])]
 
 
+_profiles = lru_cache(maxsize=64)(Profiles)
+
+
 def tip_of(finger: Fingertip, lengths: Array) -> Tip:
     """Return the tips of ridges about the lengths (m) of their contact without voltage.
 
@@ -266,7 +276,7 @@ def tip_of(finger: Fingertip, lengths: Array) -> Tip:
     Raises:
         SceneError: a ridge has several crests, or one beside its middle.
     """
-    profiles = Profiles(finger)
+    profiles = _profiles(finger)
     lower = float(profiles.skin(0.0)) / finger.ridge_amplitude
     if lower > _FLAT:
         raise SceneError(
@@ -282,6 +292,6 @@ def tip_of(finger: Fingertip, lengths: Array) -> Tip:
 
 def tip_radius(finger: Fingertip) -> float:
     """Return the radius of curvature of a sinusoidal ridge's tip (m)."""
-    step, profiles = 1e-3 * finger.ridge_wavelength, Profiles(finger)
+    step, profiles = 1e-3 * finger.ridge_wavelength, _profiles(finger)
     low, high = (float(profiles.skin(s)) for s in (0.0, step))
     return step**2 / (2 * (high - low))

@@ -114,7 +114,9 @@ class Press:
 
     def lowered(self, states: Iterable[ContactState], state: str) -> list[ContactState]:
         """Return states of one kind with the indentations without voltage."""
-        return [replace(each, bone_height=-float(self.indentation(each.f_ext, state))) for each in states]
+        states = list(states)
+        depths = self.indentation([each.f_ext for each in states], state)
+        return [replace(each, bone_height=-float(depth)) for each, depth in zip(states, depths, strict=True)]
 
     def _at(self, f_ext: ArrayLike, by_state: Mapping[str, Sequence[float]], state: str) -> Array:
         """Return power laws through the two neighbours, at the ends through the last two; shape of the forces."""

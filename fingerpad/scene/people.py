@@ -6,7 +6,7 @@ the finger's own values are then those of the middle person in its state. Factor
 :math:`x = 1 + c z`. The standard normal z is cut off at :math:`\pm 3`. Spreads are independent.
 
 Not in it: the share of ridge contact in gross contact, whose standard deviation between people is 0.10. It follows from
-the shape of ridge tips, for which no factor on a key stands.
+the shape of ridge tips, for which no factor on a key stands: each person would need a press.
 """
 
 import math
@@ -116,7 +116,7 @@ SPREADS: Mapping[str, Spread] = {
 """Spreads between people, for all fingers: the one table of them."""
 
 
-def people(n: int, seed: int, finger: str = "fitted", **changes: Any) -> list[Scene]:
+def people(n: int, seed: int = 0, finger: str = "fitted", **changes: Any) -> list[Scene]:
     """Return the scenes of people drawn from the spreads between them, :data:`SPREADS`.
 
     The same seed gives the same people on every machine, and the first of them whatever their number. Draws are of
@@ -124,7 +124,7 @@ def people(n: int, seed: int, finger: str = "fitted", **changes: Any) -> list[Sc
 
     Args:
         n: number of people.
-        seed: of the draws, 0 or more.
+        seed: of the draws, 0 or more; another one gives other people.
         finger: name of the middle person's finger.
         changes: further values by key, as :meth:`fingerpad.scene.Scene.replace` takes them.
 

@@ -127,8 +127,8 @@ class Scene(Table):
         if self.accuracy is not None:
             self.accuracy.refuse(self.output.receptors, self.friction)
         if self.history is not None:
-            steps, follows = self.numerics.step_scale, self.electric.follows
-            refuse_contradictions(self.history, given, self.output.errors, steps, follows)
+            numbers = self.numerics.step_scale, self.electric.follows
+            refuse_contradictions(self.history, given, self.output.errors, *numbers)
             refuse_floating(() if adheres(self.adhesion) else self.history)
         refuse_memory(self.force, self.friction)
         self.output.refuse(self.force, self.friction, self.contact.law, viscous_layers(self.materials))
@@ -234,7 +234,8 @@ class Scene(Table):
 
     def friction_law(self) -> Friction | None:
         """Return the law of friction, None without friction; raises as :meth:`closure` does."""
-        return law_of(_known("friction", self.friction))
+        own = _known("friction", self.friction)
+        return own if isinstance(own, Friction) else law_of(own)  # laws are checked where a scene is made
 
     def solids(self) -> dict[int, Material]:
         """Return the material of each layer's tag; raises as :meth:`closure` does."""
@@ -269,7 +270,7 @@ class Scene(Table):
         """Return every parameter in use, ready for JSON; as a scene it gives the same run again."""
         unused = {"history"} if self.history is None else {*DEFAULT_HISTORY}
         unused |= {*["accuracy"] * (self.accuracy is None), *["finger"] * (self.finger == PAPER)}
-        unused |= {"force" if self.force is None else "f_ext"}
+        unused.add("force" if self.force is None else "f_ext")
         found = self.model_dump(mode="json", exclude=unused)
         if self.geometry.file is not None:  # whose mesh has its own shape and sizes
             del found["mesh"]

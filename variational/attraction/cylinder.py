@@ -14,17 +14,21 @@ doi 10.1088/0022-3727/41/15/155315). The gap at c is the range, and f is the ext
           + \frac{4 \sigma a}{\pi E^*} \left( \sqrt{m^2 - 1} \operatorname{arcosh} m - m \ln m \right), \qquad
           f = \frac{\pi E^* a^2}{4 R} - 2 \sigma a \sqrt{m^2 - 1}.
 
+The tip touches over :math:`a_1` without attraction, and its contact force goes with a power p of the length in contact
+(:mod:`~variational.attraction.tip`). So a and m both follow from :math:`x = a / a_1`, the one unknown:
+
+.. math:: 2 \sigma a_1 \sqrt{m^2 - 1} = f \left( x^p - 1 \right) / x .
+
 The screen bears what presses and what attracts, over the length in contact, and the microscale says how far apart the
 surfaces are under that pressure (Forsbach et al. 2023, Eqs. 3, 4 and 13):
 
 .. math:: 2 a p_c = f + 2 \sigma c, \qquad d_{eq} = d_{eq}(p_c).
 
-Without voltage this is Hertz's law. A tip that is no cylinder (:mod:`~variational.attraction.tip`) has its own force
-and gap in the place of those with R. The force f is given, and a follows from the second equation. E* may grow with
-p_c, as in a ridge that friction shears. The gap at c grows with m then, which leaves one m at each p_c, and one
-equation in p_c. It can have several roots: that of the highest pressure is the branch in contact, on which the loop
-over the scales contracts; others are unstable, or states of a ridge that has not jumped on the screen yet. Where the
-highest root vanishes the ridge is past its pull-off fold and there is none.
+Without voltage this is Hertz's law. A tip that is no cylinder has its own force and gap in the place of those with R.
+E* may grow with p_c, as in a ridge that friction shears. The gap at c grows with x, which leaves one x at each p_c,
+and one equation in p_c. It can have several roots: that of the highest pressure is the branch in contact, on which the
+loop over the scales contracts; others are unstable, or states of a ridge that has not jumped on the screen yet. Where
+the highest root vanishes the ridge is past its pull-off fold and there is none.
 """
 
 from collections.abc import Callable, Sequence
@@ -39,13 +43,17 @@ from variational.attraction.tip import Tip
 from variational.roughness.closure import Closure
 
 Array = NDArray[np.floating[Any]]
-Voltage = float | Callable[[Array], Array]
-"""A voltage U (V), or one of Eq. 3 by the air gap (m) where a drive loses a part of it that depends on the gap."""
+Voltage = float | Array | Callable[[Array], Array]
+"""A voltage U (V), of all loads or of each, or one of Eq. 3 by the air gap (m) where a drive loses a part of it that
+depends on the gap."""
 _PRESSURES = np.geomspace(10.0, 1e7, 181)  # Pa, among which roots are separated
-_SMALLEST, _LARGEST = 1e-9, 1e6  # of m - 1
+_LEAST, _START, _MOST = 4e-5, 1.7, 1e6  # of the root of m^2 - 1
+_WIDEST = 200.0  # ln x^p at most
+_NO_PULL = 1e-100  # Pa, in place of no attraction
 _ROUNDOFF = 2e-16  # relative
-_STEP = 1e-9  # of Newton's method, relative; the next one would be of its square
-_TOLERANCE = 1e-14  # of the pressure, relative
+_ROUGH = 1e-3  # of Newton's method where only the sign of an excess is looked for
+_STEP = 1e-7  # of Newton's method, relative; the next one would be of its square
+_TOLERANCE = 1e-12  # of the pressure, relative
 _ITERATIONS = 100  # of a root, at most; bisection to roundoff takes 60
 _NO_EDGE = 1e-6  # relative difference of gap and reach behind which there is no root
 
@@ -122,21 +130,23 @@ class Cylinder:
         f = np.asarray(f, dtype=float)
         if not np.all(f > 0):
             raise NoEquilibriumError(f"the force on a ridge is {f[~(f > 0)][0]:g} N/m; it must be greater than 0")
+        voltage = voltage if callable(voltage) else np.broadcast_to(np.asarray(voltage, dtype=float), f.shape)
         modulus, h_0 = (np.broadcast_to(np.asarray(x, dtype=float), f.shape) for x in (self.modulus, self.h_0))
         loads = _Loads(f, modulus, h_0, np.arange(len(f)), self.tip)
         pressures = _PRESSURES[:: self.tip.stride]
         count, every = len(f), len(pressures)
         grid = loads[np.tile(np.arange(count), every)]
-        beyond, values = (each.reshape(every, count) for each in self._excess(pressures, voltage, grid))
+        edges, values = (each.reshape(every, count) for each in self._excess(pressures, voltage, grid))
         crossed = np.sign(values[:-1]) != np.sign(values[1:])
         none = ~crossed.any(axis=0) | (values[-1] <= 0)
         if none.any():
+            at = "a drive" if callable(voltage) else f"{voltage[none][0]:g} V"
             raise NoEquilibriumError(
                 f"no contact pressure from {_PRESSURES[0]:g} to {_PRESSURES[-1]:g} Pa bears {f[none][0]:g} N/m on a "
-                f"ridge at {'a drive' if callable(voltage) else f'{voltage:g} V'}; try another force or length"
+                f"ridge at {at}; try another force or length"
             )
         k, load = np.nonzero(crossed)
-        crossing, near = loads[load], beyond[k, load]
+        crossing, near = loads[load], edges[k, load]
 
         def excess(p_c: Array) -> Array:
             nonlocal near
@@ -147,21 +157,15 @@ class Cylinder:
         found = [np.flatnonzero(load == n) for n in range(count)]  # places of growing pressure
         last = np.array([places[-1] for places in found])
         p_c = roots[last]
-        a, edge, sigma, d_eq = self._at(p_c, voltage, loads, near[last])
+        a, edge, sigma, d_eq, _ = self._at(p_c, voltage, loads, near[last])
         attraction = 2 * sigma * a * (1 + edge)
         columns: Any = np.array([2 * a, 2 * a * (1 + edge), p_c, d_eq, f + attraction, attraction]).T.tolist()
         others = (tuple(map(float, roots[places[:-1]])) for places in found)
         return [RidgeState(*(*each, more)) for each, more in zip(columns, others, strict=True)]
 
     # -- the gap at c ----------------------------------------------------------------------------------
-    def _half_width(self, loads: _Loads, beyond: Array, sigma: Array) -> tuple[Array, Array]:
-        """Return a (m) at m - 1, and its derivative with respect to m."""
-        root = np.sqrt(beyond * (2 + beyond))
-        a, by_pull = loads.tip.half_width(loads.modulus, loads.f, 2 * sigma * root)
-        return a, 2 * sigma * (1 + beyond) / root * by_pull
-
-    def _edge(self, loads: _Loads, sigma: Array, reach: Array, near: Array | None = None) -> Array:
-        """Return m - 1 where the gap at c is the reach of the attraction.
+    def _edge(self, loads: _Loads, sigma: Array, reach: Array, near: Array | None = None) -> tuple[Array, Array, Array]:
+        """Return a (m), m - 1 and ln(a / a_1 - 1) where the gap at c is the reach of the attraction.
 
         By Newton's method on logarithms, between bounds: in them the gap is nearly a straight line.
 
@@ -169,63 +173,79 @@ class Cylinder:
             loads: of each ridge.
             sigma: strength of the attraction (Pa).
             reach: of the attraction (m).
-            near: values of m - 1 to start at, of edges that are known to be there.
+            near: values of ln(a / a_1 - 1) to start at, of edges that are known to be there; without them the gap is
+                the reach to a millionth.
 
         Raises:
             NoEquilibriumError: the gap at c is smaller up to the largest m, or larger from the least m on.
         """
+        p, alone = loads.tip.power, loads.tip.alone(loads.modulus, loads.f)
+        sigma = np.maximum(sigma, _NO_PULL)
+        scale, pulled = loads.f / (2 * sigma * alone), 4 * sigma / (np.pi * loads.modulus)
 
-        def opening(y: Array) -> tuple[Array, Array]:
-            """Return the logarithm of the gap over the reach, and its derivative with respect to y = ln(m - 1)."""
-            beyond = np.exp(y)
-            m, root = 1 + beyond, np.sqrt(beyond * (2 + beyond))
-            angle, logarithm = np.log1p(beyond + root), np.log1p(beyond)  # arcosh m, ln m
-            pulled, pulled_part = 4 * sigma / (np.pi * loads.modulus), root * angle - m * logarithm
-            a, slope = self._half_width(loads, beyond, sigma)
+        def at(y: Array) -> tuple[Array, ...]:
+            """Return a, its derivative, root, m - 1 and the derivative of m, all with respect to y."""
+            wider = np.exp(y)
+            x, more = 1 + wider, np.expm1(p * np.log1p(wider))
+            root = scale * more / x
+            m = np.sqrt(1 + root * root)
+            by_m = root / m * scale * wider * (p + (p - 1) * more) / (x * x)
+            return alone * x, alone * wider, root, root * root / (1 + m), by_m
+
+        def opening(y: Array) -> tuple[Array, Array, Array]:
+            """Return the logarithm of the gap over the reach, its derivative, and m - 1."""
+            a, a_slope, root, beyond, m_slope = at(y)
+            m, angle, logarithm = 1 + beyond, np.arcsinh(root), np.log1p(beyond)  # of both: arcosh m, ln m
+            part = pulled * (root * angle - m * logarithm)
             gap, by_a, by_m = loads.tip.gap(a, beyond, root, angle)
-            gap += pulled * a * pulled_part
-            grows = slope * (by_a + pulled * pulled_part)
-            grows += by_m + pulled * a * (m / root * angle - logarithm)
-            return np.log(gap / reach), beyond * grows / gap
+            gap = gap + a * part
+            grows = a_slope * (by_a + part) + m_slope * (by_m + pulled * a * (m / root * angle - logarithm))
+            return np.log(gap / reach), grows / gap, beyond
 
-        low, high, y = (np.full_like(sigma, np.log(end)) for end in (_SMALLEST, _LARGEST, 1.0))
-        y = y if near is None else np.log(near)
+        def bound(root: float, power: Any) -> Array:
+            """Return y near a value of the root: below it of the power p, above it of p - 1."""
+            return np.asarray(np.log(np.expm1(np.minimum(np.log1p(root / scale) / power, _WIDEST / p))))
+
+        low, high = bound(_LEAST, p), bound(_MOST, p - 1)
+        y, close = (bound(_START, p - 0.5), _ROUGH) if near is None else (near, _STEP)
         for _ in range(_ITERATIONS):
-            value, slope = opening(y)
-            low, high = np.where(value < 0, y, low), np.where(value < 0, high, y)
-            step = value / slope
-            inside = (y - step > low) & (y - step < high)
-            small = abs(step) <= _STEP + 4 * _ROUNDOFF * np.exp(-y)  # the gap is a difference, good to 1e-16 / (m - 1)
-            y = np.where(inside | small, y - step, (low + high) / 2)
+            value, slope, beyond = opening(y)
+            below, step = value < 0, value / slope
+            low, high = np.where(below, y, low), np.where(below, high, y)
+            after = y - step
+            small = abs(step) <= close + 4 * _ROUNDOFF / beyond  # the gap is a difference, good to 1e-16 / (m - 1)
+            y = np.where(((after > low) & (after < high)) | small, after, (low + high) / 2)
             if small.all():
-                return np.exp(y)
-        none = abs(opening(y)[0]) > _NO_EDGE
-        if none.any():
-            k = int(np.argmax(none))
-            raise NoEquilibriumError(
-                f"no contact bears {loads.f[k]:g} N/m under an attraction of {sigma[k]:.3g} Pa; "
-                "try a smaller voltage or another force"
-            )
-        return np.exp(y)
+                break
+        else:
+            none = abs(opening(y)[0]) > _NO_EDGE
+            if none.any():
+                k = int(np.argmax(none))
+                raise NoEquilibriumError(
+                    f"no contact bears {loads.f[k]:g} N/m under an attraction of {sigma[k]:.3g} Pa; "
+                    "try a smaller voltage or another force"
+                )
+        a, _, _, beyond, _ = at(y)
+        return a, beyond, y
 
     # -- the microscale --------------------------------------------------------------------------------
     def _at(
         self, p_c: Array, voltage: Voltage, loads: _Loads, near: Array | None = None
-    ) -> tuple[Array, Array, Array, Array]:
-        """Return a (m), m - 1, strength of the attraction (Pa) and air gap (m) at contact pressures (Pa).
+    ) -> tuple[Array, Array, Array, Array, Array]:
+        """Return a (m), m - 1, strength of attraction (Pa), air gap (m) and ``near``, at contact pressures (Pa).
 
         Args:
             p_c: of each ridge, or of as many ridges after each other as there are more ridges than pressures.
             voltage: (V).
             loads: of each ridge.
-            near: values of m - 1 to start at.
+            near: values of ln(a / a_1 - 1) to start at.
         """
         d_eq, gain = self._laws_at(p_c, loads)
         loads = loads if gain is None else replace(loads, modulus=loads.modulus + gain)
-        volts = voltage(d_eq) if callable(voltage) else voltage
+        volts = voltage(d_eq) if callable(voltage) else voltage[loads.number]  # type: ignore[index]
         sigma = VACUUM_PERMITTIVITY * volts**2 / 2 / (loads.h_0 + d_eq) ** 2
-        beyond = self._edge(loads, sigma, loads.h_0 + 2 * d_eq, near)
-        return self._half_width(loads, beyond, sigma)[0], beyond, sigma, d_eq
+        a, beyond, near = self._edge(loads, sigma, loads.h_0 + 2 * d_eq, near)
+        return a, beyond, sigma, d_eq, near
 
     def _laws_at(self, p_c: Array, loads: _Loads) -> tuple[Array, Array | None]:
         """Return the air gap (m) of each ridge, and what its modulus gains (Pa); arguments of :meth:`_at`."""
@@ -240,9 +260,9 @@ class Cylinder:
         return d_eq, None if self.stiffening is None else self.stiffening(pressures, loads.number)
 
     def _excess(self, p_c: Array, voltage: Voltage, loads: _Loads, near: Array | None = None) -> tuple[Array, Array]:
-        """Return m - 1, and what pressures bear beyond attraction and force (N/m); arguments of :meth:`_at`."""
-        a, beyond, sigma, _ = self._at(p_c, voltage, loads, near)
-        return beyond, 2 * a * (np.repeat(p_c, len(a) // len(p_c)) - sigma * (1 + beyond)) - loads.f
+        """Return ``near``, and what pressures bear beyond attraction and force (N/m); arguments of :meth:`_at`."""
+        a, beyond, sigma, _, near = self._at(p_c, voltage, loads, near)
+        return near, 2 * a * (np.repeat(p_c, len(a) // len(p_c)) - sigma * (1 + beyond)) - loads.f
 
 
 def _roots(function: Callable[[Array], Array], low: tuple[Array, Array], high: tuple[Array, Array]) -> Array:

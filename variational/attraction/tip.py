@@ -29,8 +29,6 @@ from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.floating[Any]]
 _NODES, _WEIGHTS = (each / 2 for each in np.polynomial.legendre.leggauss(7))
-_CLOSE = 1e-12  # of a half-length, relative; the next step would be of its square
-_ITERATIONS = 60
 _LEAST_POWER = 1.05  # of a profile beyond its flank: its contact force has to grow
 
 
@@ -59,8 +57,8 @@ class Tip(ABC):
         """Return the modulus E* (Pa) with which contact lengths (m) bear forces (N/m), uncharged."""
 
     @abstractmethod
-    def half_width(self, modulus: Array, f: Array, pull: Array) -> tuple[Array, Array]:
-        r"""Return a (m) where :math:`f_1(a) = f + pull\,a`, and its derivative with respect to pull (Pa)."""
+    def alone(self, modulus: Array, f: Array) -> Array:
+        """Return a (m) under forces (N/m), uncharged."""
 
     @abstractmethod
     def gap(self, a: Array, beyond: Array, root: Array, angle: Array) -> tuple[Array, Array, Array]:
@@ -86,11 +84,9 @@ class Round(Tip):
         """Return the modulus by Hertz's law."""
         return np.asarray(4 * self.radius * np.asarray(f) / (np.pi * (np.asarray(length) / 2) ** 2))
 
-    def half_width(self, modulus: Array, f: Array, pull: Array) -> tuple[Array, Array]:
-        """Return the root of a quadratic equation."""
-        stiffness = np.pi * modulus / (2 * self.radius)
-        both = np.sqrt(pull**2 + 2 * stiffness * f)
-        return (pull + both) / stiffness, (1 + pull / both) / stiffness
+    def alone(self, modulus: Array, f: Array) -> Array:
+        """Return Hertz's half-width."""
+        return np.sqrt(4 * self.radius * f / (np.pi * modulus))
 
     def gap(self, a: Array, beyond: Array, root: Array, angle: Array) -> tuple[Array, Array, Array]:
         """Return the gap beside a cylinder."""
@@ -116,20 +112,9 @@ class Power(Tip):
         a = np.asarray(length) / 2
         return np.asarray(np.asarray(f) / (self.depth * (a / self.half) ** self.power))
 
-    def half_width(self, modulus: Array, f: Array, pull: Array) -> tuple[Array, Array]:
-        """Return the root by Newton's method in ln a, which is monotone: there the equation is concave."""
-        p, grows = self.power, modulus * self.depth
-        own, pulled = f / grows, pull * self.half / grows
-        with np.errstate(divide="ignore"):
-            y = np.maximum(np.log(own) / p, np.log(pulled) / (p - 1))
-        for _ in range(_ITERATIONS):
-            part = pulled * np.exp(y)
-            step = (p * y - np.log(part + own)) / (p - part / (part + own))
-            y = y - step
-            if np.all(abs(step) <= _CLOSE):
-                break
-        x = np.exp(y)
-        return self.half * x, self.half**2 * x / (grows * (p * (pulled * x + own) / x - pulled))
+    def alone(self, modulus: Array, f: Array) -> Array:
+        """Return the half-width; the power law goes on to other lengths than that of the tip."""
+        return np.asarray(self.half * (f / (modulus * self.depth)) ** (1 / self.power))
 
     def gap(self, a: Array, beyond: Array, root: Array, angle: Array) -> tuple[Array, Array, Array]:
         """Return the gap beside a power law."""

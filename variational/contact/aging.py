@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from variational.coefficients import parameter, ufl
-from variational.contact.friction import Friction
+from variational.contact.friction import Friction, Part
 
 
 class Growing(Friction):
@@ -78,11 +78,15 @@ class GrowingShear(Growing):
     """Time T (s) in which what is left of the growth falls to 37 %. Three of 7 s are the 20 s in which ridges on glass
     were seen to grow."""
     p_reg: float = parameter(1e-3, 1e9, "Pa", default=1e3)
-    """Contact pressure (Pa) below which tau_0 fades out. *Assumption*; a larger tau_0 may need a larger one."""
+    """Contact pressure (Pa) below which tau_0 fades out. *Assumption*."""
 
     def limit(self, p, memory=0.0):
         """Return the limit (Pa)."""
         return self.mu_f * p + memory * self.tau_0 * p / (p**2 + self.p_reg**2) ** 0.5
+
+    def limit_over(self, part: Part, *memory):
+        """Return mu_f times the point's pressure and tau_0, as far as it grew, times the share in contact (Pa)."""
+        return self.mu_f * part.p + memory[0] * self.tau_0 * part.share(self.p_reg)
 
 
 @dataclass(frozen=True)

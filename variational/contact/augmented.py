@@ -66,8 +66,7 @@ class AugmentedLagrangian(Formulation):
     def error(self, state: SurfaceState, history: History, friction: Friction | None) -> float:
         """Return the largest depth, or opening under pressure, and elastic slip at this rank's points (m)."""
         depth = np.abs(state.p_n - history["pressure"]) / self.eps_n
-        limit = np.zeros_like(state.p_n) if friction is None else friction.limit_in(state)
-        sticking = (state.p_n > 0) & (np.abs(state.t_t) < limit * (1 - CONE_ROUNDOFF))
+        sticking = (state.p_n > 0) & (np.abs(state.t_t) < state.limit * (1 - CONE_ROUNDOFF))
         slip = np.where(sticking, np.abs(state.x - history["x"]), 0.0)
         return float(max(depth.max(initial=0.0), slip.max(initial=0.0)))
 

@@ -33,7 +33,7 @@ from numpy.typing import NDArray
 
 from variational.caution import Caution
 from variational.coefficients import LawError, Named, refuse_not_positive, said
-from variational.contact.friction import Friction
+from variational.contact.friction import Friction, Part
 
 Array = NDArray[np.float64]
 STICKS, SLIPS = 1e-9, -1e-9
@@ -100,6 +100,8 @@ class Skin:
     """Of the skin over the screen since (m), with a memory."""
     lapse: Any = None
     """Time since (s), with a memory."""
+    along: Any = ()
+    """Heights (m) along the part of its facet that each point stands for, with a law of friction that goes by area."""
 
 
 @dataclass(frozen=True)
@@ -121,6 +123,7 @@ class Contact:
         p_n: contact pressure (Pa of reference area).
         t_t: tangential traction on the skin (Pa of reference area).
         traction: the two as a vector (t_t, p_n).
+        limit: largest tangential traction (Pa of reference area).
         new_anchor: anchor that a step leaves when it is accepted (m).
         memory: that of the law of friction which a step leaves; None where it has none.
     """
@@ -142,17 +145,18 @@ class Contact:
         self.p_n = pressure(self.gap, s.gamma_n)
         self.memory = None
         if friction is None:
-            self.t_t, self.new_anchor = ufl.zero(), skin.u[0]
+            self.limit, self.t_t, self.new_anchor = ufl.zero(), ufl.zero(), skin.u[0]
         else:
+            part = Part(self.p_n, [s.lambda_n - s.gamma_n * y for y in skin.along])
             if skin.memory is not None:
-                self.memory = friction.remembered(skin.memory, self.p_n, skin.way, skin.lapse)
-            limit = _limit(friction, self.p_n, self.memory)
-            self.t_t = traction(skin.u[0], skin.anchor, limit, ease * s.gamma_t, guess, s.lambda_t)
+                self.memory = friction.remembered(skin.memory, part.mean, skin.way, skin.lapse)
+            self.limit = _limit(friction, part, self.memory)
+            self.t_t = traction(skin.u[0], skin.anchor, self.limit, ease * s.gamma_t, guess, s.lambda_t)
             self.new_anchor = new_anchor(skin.u[0], self.t_t, s.gamma_t, s.lambda_t)
         self.traction = ufl.as_vector([self.t_t, self.p_n])
 
 
-def _limit(friction: Friction, p_n, memory):
+def _limit(friction: Friction, part: Part, memory):
     """Return the limit of friction (Pa) as the weak form has it.
 
     Raises:
@@ -161,7 +165,7 @@ def _limit(friction: Friction, p_n, memory):
     import ufl
 
     try:
-        return ufl.as_ufl(friction.limit(p_n) if memory is None else friction.limit(p_n, memory))  # type: ignore[call-arg]
+        return ufl.as_ufl(friction.limit_over(part, *([] if memory is None else [memory])))
     except Exception as error:  # whatever the user's limit raises
         raise LawError(
             f"the limit of the law {type(friction).__name__} cannot be put into the weak form: {said(error)}; write it "
@@ -189,8 +193,15 @@ class SurfaceState:
     p_el: Array
     area_x: Array
     area_y: Array
+    limit: Array
+    """Largest tangential traction (Pa of reference area)."""
     history: History = field(default_factory=dict)
     """What the state leaves in the fields of the skin when it is accepted."""
+
+    @property
+    def touching(self) -> NDArray[np.bool_]:
+        """Whether the points are in contact, or at least a place in the part of a facet that they stand for."""
+        return (self.p_n > 0) | (self.limit > 0)
 
 
 class Formulation(Named, ABC):
@@ -215,6 +226,10 @@ class Formulation(Named, ABC):
             ValueError: one that is not greater than 0 and finite.
         """
         refuse_not_positive(self)
+
+    def beside(self, friction: Friction | None) -> Self:
+        """Return the formulation as it is taken beside a law of friction; mostly it is the same."""
+        return self
 
     def cautions(self) -> list[Caution]:
         """Return what a check of a scene prints of the formulation before a run."""

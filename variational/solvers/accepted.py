@@ -41,7 +41,7 @@ def return_to_onset(solver: Solver, observer: Observer, way: float) -> float:
     if not observer.slip(state)[1]:
         return 0.0
     slip = direction * (state.anchor - solver.problem.history.imposed["anchor"])
-    least = float(np.min(slip, where=state.p_n > 0, initial=np.inf))
+    least = float(np.min(slip, where=state.touching, initial=np.inf))
     back = (1 - _LEFT) * max(solver.layout.comm.allreduce(least, op=MPI.MIN), 0.0)
     forces = solver.iteration.f
     allowed = solver.iteration.tolerance + 2 * forces.norm()
