@@ -127,8 +127,8 @@ class Scene(Table):
         if self.accuracy is not None:
             self.accuracy.refuse(self.output.receptors, self.friction)
         if self.history is not None:
-            numbers = self.numerics.step_scale, self.electric.follows
-            refuse_contradictions(self.history, given, self.output.errors, *numbers)
+            steps, follows = self.numerics.step_scale, self.electric.follows
+            refuse_contradictions(self.history, given, self.output.errors, steps, follows)
             refuse_floating(() if adheres(self.adhesion) else self.history)
         refuse_memory(self.force, self.friction)
         self.output.refuse(self.force, self.friction, self.contact.law, viscous_layers(self.materials))
@@ -270,7 +270,7 @@ class Scene(Table):
         """Return every parameter in use, ready for JSON; as a scene it gives the same run again."""
         unused = {"history"} if self.history is None else {*DEFAULT_HISTORY}
         unused |= {*["accuracy"] * (self.accuracy is None), *["finger"] * (self.finger == PAPER)}
-        unused.add("force" if self.force is None else "f_ext")
+        unused |= {"force" if self.force is None else "f_ext"}
         found = self.model_dump(mode="json", exclude=unused)
         if self.geometry.file is not None:  # whose mesh has its own shape and sizes
             del found["mesh"]
@@ -332,8 +332,7 @@ def from_data(data: Mapping[str, Any]) -> Scene:
     Raises:
         SceneError: the first key at fault.
     """
-    data = plain(data)
-    if not isinstance(data, dict):
+    if not isinstance(data := plain(data), dict):
         raise SceneError(f"a scene is {show(data)}; it must be a table of keys")
     return Scene(**data)
 
