@@ -124,3 +124,14 @@ def test_fitted_finger_has_one_air_gap_by_each_closure(law):
     scene = fp.Scene(finger="fitted", roughness={"law": name, **more})
     assert scene.roughness.h_rms == AIR_GAP[law]
     assert float(scene.closure()(18e3).d_eq) == pytest.approx(2e-6, rel=0.01)
+
+
+@pytest.mark.parametrize("keys", [{"force": 0.5}, {}])
+def test_dataset_has_both_the_name_and_the_whole_finger(keys):
+    result = fp.run(fp.Scene(finger="fitted", **keys), model="cylinders")
+    data = result.to_xarray()
+    again = fp.Result.from_xarray(data)
+    assert data.attrs["finger"] == again.scene.finger == "fitted"
+    assert (again.finger is None) == (result.finger is None)
+    if result.finger:
+        assert again.finger.full_slip.f_t == pytest.approx(result.finger.full_slip.f_t, rel=1e-12)

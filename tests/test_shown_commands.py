@@ -98,6 +98,9 @@ def test_shown_command_runs(line, folder, capsys, monkeypatch):
     if "--feel" in words:  # a run with a load over time
         loads = [{"name": "press", "f_ext": 1.0, "duration": 0.02}]
         fp.run(fp.Scene(**NINE, history=loads, output={"errors": False}), out=words[1])
+    if words[0] == "sensitivities":
+        with no_pictures():
+            fp.run(fp.Scene.load("scene.toml").replace(output={"sensitivities": True}), out=words[1])
     if words[0] == "compare":
         fp.sweep(fp.Scene(), "results/sweep", model="cylinders", voltage=[0, 200], f_ext=[25, 75])
     if "--resume" in words:  # a run that was killed when its checkpoint was whole

@@ -192,16 +192,21 @@ def grouped(
         mine = next((g for g in groups if solids[g[0]].kind() == solid.kind()), None)
         groups.append([tag]) if mine is None else mine.append(tag)
 
-    def field(values: Mapping[int, float]) -> fem.Function:
-        f = fem.Function(cellwise)
-        for tag, value in values.items():
-            f.x.array[cell_tags.find(tag)] = value
-        f.x.scatter_forward()
-        return f
-
     found: dict[tuple[int, ...], Material] = {}
     for group in groups:
         first = solids[group[0]]
-        fields = {name: field({tag: solids[tag].number(name) for tag in group}) for name in first.names()}
-        found[tuple(group)] = first.with_values(fields)
+        found[tuple(group)] = first.with_values({name: fem.Function(cellwise) for name in first.names()})
+    write(found, solids, cell_tags)
     return found
+
+
+def write(
+    laws: Mapping[tuple[int, ...], Material], solids: Mapping[int, Material], cell_tags: dolfinx.mesh.MeshTags
+) -> None:
+    """Write the numbers of each layer's material into the fields of laws by group, as of :func:`grouped`."""
+    for tags, law in laws.items():
+        for name in solids[tags[0]].names():
+            field = getattr(law, name)
+            for tag in tags:
+                field.x.array[cell_tags.find(tag)] = solids[tag].number(name)
+            field.x.scatter_forward()

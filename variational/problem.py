@@ -19,7 +19,7 @@ v \,dS`, which is no part of the equations but of pseudo-transient continuation 
 This module adds up forms and never solves.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache
 from typing import Any
@@ -30,10 +30,9 @@ import ufl
 from dolfinx import fem
 
 from variational import jit, kinematics
-from variational.contact.formulation import STICKS, Contact, Formulation, Skin
-from variational.contact.friction import Friction
+from variational.contact.formulation import STICKS, Contact, Skin
 from variational.contact.interface import Interface
-from variational.element import ELEMENTS, Centroid, Element, LayerwisePressure, grouped
+from variational.element import ELEMENTS, Centroid, Element, LayerwisePressure, grouped, write
 from variational.history import History, SkinField
 from variational.materials.material import Material
 from variational.relaxation import Spent, relaxations
@@ -126,7 +125,9 @@ class Problem:
             tags: law.density(kinematics.deformation_gradient(H), self.pressures[tags])
             for tags, law in self.laws.items()
         }
-        self._add_contact(solids, cellwise)
+        self._solids, self._stiffness = solids, fem.Function(cellwise)
+        self._write_skin_stiffness()
+        self._add_contact()
         at_rest = {tags: law.at_rest for tags, law in self.laws.items()}
         stored = self._strain_energy(at_rest, kind) if self.relaxations else energy
         if interface.attraction:
@@ -180,7 +181,7 @@ class Problem:
                 self.pressures[tags] = law.pressure(centroid.value(H))
         return energy
 
-    def _add_contact(self, solids: Mapping[int, Material], cellwise: fem.FunctionSpace) -> None:
+    def _add_contact(self) -> None:
         """Describe the skin and its contact by the formulation of the interface, UFL."""
         mesh, surface, interface = self.mesh, self.surface, self.interface
         F = kinematics.deformation_gradient(ufl.grad(self.w))
@@ -205,7 +206,7 @@ class Problem:
             self.multiplier,
             cache(lambda: self._skin_stress(F) * normal),
             (self.p_el + self._adhesion.pressure(self.y) if self._adhesion else self.p_el) * self.area,
-            lambda: self._skin_stiffness(solids, cellwise),
+            lambda: self._stiffness,
             of_springs,
             self._memory,
             None if self._x_before is None else self.x - self._x_before,
@@ -283,61 +284,55 @@ class Problem:
         behind_all = found.pop()
         return kinematics.first_piola_kirchhoff(self.laws[behind_all], F, self.pressures[behind_all])
 
-    def _skin_stiffness(self, solids: Mapping[int, Material], cellwise: fem.FunctionSpace) -> fem.Function:
-        """Return the constrained modulus behind the touching skin over the facets' lengths (Pa/m), cell by cell."""
-        f = fem.Function(cellwise)
-        for tag, solid in solids.items():
+    def _write_skin_stiffness(self) -> None:
+        """Write the constrained modulus behind the touching skin over the facets' lengths (Pa/m), cell by cell."""
+        f = self._stiffness
+        for tag, solid in self._solids.items():
             f.x.array[self.cell_tags.find(tag)] = solid.constrained_modulus
         f.x.array[self.surface.pairs[:, 0]] /= self.surface.length
         f.x.scatter_forward()
-        return f
 
     def displacement(self) -> np.ndarray:
         """Return the displacement (m) of this rank's nodes, ghosts included, shape (nodes, 2)."""
         return np.asarray(self.w.x.array.reshape(-1, 2) + self.bone.value)
 
-    def set_laws(
-        self, friction: Friction | None, h_0: float, share: Callable[[np.ndarray], np.ndarray] | None = None
-    ) -> None:
-        """Give the law of friction other numbers, the screen another insulator, and the ridges another share.
-
-        Args:
-            friction: of the present law's kind.
-            h_0: effective insulator thickness (m).
-            share: see :class:`Interface`; it acts from :meth:`set_air_gaps` on.
+    def set_interface(self, interface: Interface) -> None:
+        """Give the laws of the contact other numbers; those of a share of the voltage act from :meth:`set_air_gaps` on.
 
         Raises:
-            ValueError: the law is of another kind, or only one of the shares is None, so that the forms would be
-                others; in one sentence.
+            ValueError: a law is of another kind, or only one of the shares is None, so that the forms would be others;
+                in one sentence.
         """
-        before = self.interface.friction
-        if friction is None or before is None or friction.kind() != before.kind():
-            if friction is not before:
-                raise ValueError(f"friction is {friction}; it must be {before}, or that law with other numbers")
-        else:
-            for name in friction.names():
-                getattr(self._friction, name).value = getattr(friction, name)
-        self._h_0.value = h_0
-        if (share is None) != (self.share is None):
+        before = self.interface
+        for name, mine in (("friction", self._friction), ("adhesion", self._adhesion)):
+            law, old = getattr(interface, name), getattr(before, name)
+            if law is None or old is None or law.kind() != old.kind():
+                if law is not old:
+                    raise ValueError(f"{name} is {law}; it must be {old}, or that law with other numbers")
+                continue
+            for number in law.names():
+                getattr(mine, number).value = law.number(number)
+        if type(interface.formulation) is not type(before.formulation):
+            raise ValueError(f"contact is {interface.formulation}; it must be {before.formulation} with other numbers")
+        if (interface.share is None) != (self.share is None):
             raise ValueError("share is None before or now; it must be a function both times, or never")
-        self.interface = replace(self.interface, friction=friction, h_0=h_0, share=share)
-
-    def set_formulation(self, formulation: "Formulation") -> None:
-        """Give the contact's formulation other numbers.
-
-        Args:
-            formulation: of the present kind.
-
-        Raises:
-            ValueError: it is of another kind, so that the forms would be others.
-        """
-        if type(formulation) is not type(self.interface.formulation):
-            raise ValueError(f"contact is {formulation}; it must be {self.interface.formulation} with other numbers")
+        self._h_0.value = interface.h_0
         values: list[float] = []
-        formulation.springs(replace(self._skin, constant=values.append))
+
+        def kept(value: float) -> float:
+            values.append(value)
+            return value
+
+        interface.formulation.springs(replace(self._skin, constant=kept))
         for constant, value in zip(self._springs, values, strict=True):
             constant.value = value
-        self.interface = replace(self.interface, formulation=formulation)
+        self.interface = interface
+
+    def set_solids(self, solids: Mapping[int, Material]) -> None:
+        """Give the layers' laws other numbers: material of each layer's tag, of the present kinds."""
+        write(self.laws, solids, self.cell_tags)
+        self._solids = solids
+        self._write_skin_stiffness()
 
     def set_air_gaps(self, d_eq: np.ndarray) -> None:
         """Give each ridge its equivalent air gap (m), shape (ridges,), and its share of the voltage."""

@@ -66,6 +66,7 @@ class Observer:
 
     Attributes:
         mirrored: whether it is that of the half of a body whose other half is the mirror image.
+        evaluated: what the numbers of a :class:`SurfaceState` are, in their order; UFL.
     """
 
     def __init__(self, problem: Problem, mirrored: bool = False) -> None:
@@ -77,20 +78,20 @@ class Observer:
         """
         self.problem, self.surface, self.mirrored = problem, problem.surface, mirrored
         c, place = problem.contact, [problem.x, problem.y, problem.opening]
-        self._evaluated = [*place, c.new_anchor, c.p_n, c.t_t, problem.p_el, *problem.area, c.limit]
+        self.evaluated = [*place, c.new_anchor, c.p_n, c.t_t, problem.p_el, *problem.area, c.limit]
         self._rules: dict[str, int] = {}  # of history: place among what is compiled
 
     def state(self) -> SurfaceState:
         """Evaluate the surface in the problem's current state, with what it leaves in the history; collective."""
         skin = self.problem.history.skin
         if len(skin) > len(self._rules):
-            found = [*self._evaluated]
+            found = [*self.evaluated]
             found += [field.update for field in skin if field.update not in found]
             self._rules = {field.name: found.index(field.update) for field in skin}
             self._compiled = self.surface.compile(found)
         values = self.surface.evaluate(self._compiled)
         history = {name: values[k] for name, k in self._rules.items()}
-        return replace(SurfaceState(*values[: len(self._evaluated)]), history=history)
+        return replace(SurfaceState(*values[: len(self.evaluated)]), history=history)
 
     def ridge_loads(self, state: SurfaceState | None = None, by_gap: bool = False) -> RidgeLoads:
         """Return the ridges' resultants.

@@ -16,6 +16,7 @@ from fingerpad.model.finger import Step, both_sides
 from fingerpad.model.options import FingerModel
 from fingerpad.model.record import Viewer
 from fingerpad.model.simulation import RestartRequired, Simulation
+from fingerpad.model.slopes import state_slopes
 from fingerpad.results.fields import View
 from fingerpad.results.states import SLIDE_ON, WORDS, before_sliding
 from geometry.profiles import Profiles
@@ -86,6 +87,13 @@ class StateRecorder:
         """Add the stability of the present state, which was kept; collective."""
         kept, checked = self.states[name], self._simulation.checks.check(name)
         self.states[name] = replace(kept, state=checked.of(kept.state))
+
+    def keep_slopes(self, name: str, number: int) -> None:
+        """Add the slopes of the present state, which was kept, of the load of a number; collective."""
+        simulation = self._simulation
+        if simulation.model.given:
+            found = state_slopes(simulation.model, simulation.finger, number)
+            self.states[name] = replace(self.states[name], slopes=found)
 
     def _state(self, direction: int) -> State:
         f = self._simulation.finger
@@ -167,7 +175,7 @@ class StateSolver(Simulation):
         place = problem.history.followed(self.finger.continuation.surface_state.history)["anchor"]
         elastic = problem.history.accepted["anchor"] - place
         problem.history.accept({"anchor": place + elastic / 2 - direction * SLIDE_ON})
-        problem.set_formulation(formulation)
+        problem.set_interface(replace(problem.interface, formulation=formulation))
         self._balance(name)
 
     def _balance(self, name: str) -> Attempt:
@@ -264,7 +272,7 @@ def _solve(
     ends = ((contact_ends(state.snapshot, along, state.facet), state.facet) for state in states.values())
     simulation = StateSolver(model.changed(edges=edge_places(ends, model.mesh)), comm)
     recorder, over, finger = StateRecorder(simulation), StateRecorder(simulation), simulation.finger
-    springs, soft, viewer = finger.problem.interface.formulation, "", Viewer(finger) if views else None
+    interface, soft, viewer = finger.problem.interface, "", Viewer(finger) if views else None
     for name, state in states.items():
         words = WORDS.get(name, name)
         pause()
@@ -274,13 +282,14 @@ def _solve(
             recorder.examine(name)
         if viewer is not None:
             recorder.views[name] = viewer.view(simulation.present(finger.ridge_loads())).at(state.state.bone_x)
+            recorder.keep_slopes(name, state.state.load_number)
         if stiffer is not None:
             try:
                 simulation.over_stiffer_screen(stiffer, words, state.direction)
                 over.keep(name, state.direction != 0)
             except StepFailed as error:
                 soft = str(error)
-            finger.problem.set_formulation(springs)
+            finger.problem.set_interface(interface)
     finger.solver.iteration.free()
     simulation.checks.free()
     stiff = over.solve() if over.states and not soft else None

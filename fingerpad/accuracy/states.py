@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fingerpad.model.slopes import StateSlopes
 from fingerpad.results.fields import View
 from fingerpad.results.quantities import FRICTION, RESULTS, in_table
 from geometry.parameters import MeshSize
@@ -42,6 +43,8 @@ class State:
     """Strain energy density (J/m^3) at the Merkel sites of the ridges that can touch."""
     facet: float
     """Length of the facets where contact ends (m)."""
+    slopes: StateSlopes | None = None
+    """By the numbers of the scene, where they are wanted."""
 
 
 @dataclass(frozen=True)

@@ -147,5 +147,6 @@ class FullSlips:
     def _set_laws(
         self, friction: Friction | None, roughness: Closure | None, h_0: float, share: GapFactor | None
     ) -> None:
-        self.finger.problem.set_laws(friction, h_0, share)
+        problem = self.finger.problem
+        problem.set_interface(replace(problem.interface, friction=friction, h_0=h_0, share=share))
         self.finger.closure = self.finger.coupling.closure = roughness

@@ -28,14 +28,16 @@ from typing import Any
 
 from fingerpad.model import drive_loads
 from fingerpad.results.terminal import about
-from fingerpad.scene import Numerics, Scene
+from fingerpad.scene import Numerics, Scene, with_values
 from fingerpad.scene.controls import ends_of
 from fingerpad.scene.materials import adheres
 from fingerpad.scene.messages import SceneError, qualify
+from fingerpad.scene.reading import flat
 from fingerpad.scene.viscosity import viscous_layers
 from geometry import sizing
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import GeometryError
+from geometry.units import computed
 from variational.contact.formulation import Formulation
 from variational.materials.material import Material
 
@@ -50,6 +52,8 @@ _RIDGES, _FORCE, _FRICTION = 10, 75.0, 0.25  # on either side, at a force (N/m) 
 _WIDENS, _ROLLS = 0.27, 0.3  # powers of the force and of a larger friction coefficient
 _FEWEST = 2  # ridges on either side
 _PRESSURE = 30e3  # Pa, mean contact pressure of ridges, at which a friction law other than Coulomb's is evaluated
+
+_NO_PHYSICS = "mesh numerics output accuracy slices slide_length geometry".split()  # tables and keys
 
 
 @dataclass(frozen=True)
@@ -148,6 +152,7 @@ class FingerModel:
         share: voltage at air gaps (m) over that of the loads; None where nothing is lost.
         numerics: element, tolerances and memory.
         asked: largest relative errors allowed, by quantity; empty where no accuracy is asked for.
+        given: numbers of the scene by dotted key, by which slopes are wanted; empty where none are.
     """
 
     def __init__(self, scene: Scene, options: ModelOptions) -> None:
@@ -173,6 +178,8 @@ class FingerModel:
         self.share = drive_loads.gap_factor(scene)
         self.numerics: Numerics = scene.numerics
         self.asked: Mapping[str, float] = {} if scene.accuracy is None else scene.accuracy.tolerances()
+        self.given = numbers(scene) if scene.output.sensitivities else {}
+        self._scene = scene.replace(output={"sensitivities": False}) if self.given else None
         self.final: MeshSize | None = None
         self.edges: tuple[float, ...] = ()
 
@@ -204,6 +211,12 @@ class FingerModel:
         half_arc = last * self.geometry.ridge_wavelength
         return self.changed(mesh=self.mesh.model_copy(update={"touching_half_arc": half_arc}))
 
+    def with_number(self, key: str, value: float) -> "FingerModel":
+        """Return the model of its scene with another of the numbers :attr:`given`."""
+        assert self._scene is not None
+        with computed():
+            return FingerModel(with_values(self._scene, {key: value}), self.options)
+
     @property
     def omitted(self) -> tuple[Omission, ...]:
         """All omissions, also that of the ridges that are not meshed to touch."""
@@ -214,6 +227,12 @@ class FingerModel:
             return self.options.omitted
         reason = "they are not expected to touch, which each accepted step is checked for"
         return (*self.options.omitted, Omission(f"contact of the ridges beyond ±{last}", reason))
+
+
+def numbers(scene: Scene) -> dict[str, float]:
+    """Return the numbers of a scene on which its states depend, by dotted key; not those of meshes and solvers."""
+    own = {key: x for key, x in flat(scene.parameters()).items() if isinstance(x, float)}
+    return {key: x for key, x in own.items() if re.split(r"[.\[]", key)[0] not in _NO_PHYSICS}
 
 
 def check(scene: Scene) -> None:

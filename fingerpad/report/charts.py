@@ -16,6 +16,7 @@ DASHES = ("", "6 3", "2 3", "8 3 2 3", "10 4")
 _WIDTH, _LEFT, _RIGHT, _TOP, _FOOT, _GAP = 560.0, 48.0, 16.0, 22.0, 42.0, 30.0  # px
 _MARGIN = 0.05  # of the span of values
 _TICK = 0.4  # half of the height of a spike
+_ROW = 26.0  # px, of a bar
 _BEND = 0.02  # px, between a point and the line of its neighbours that has it
 
 
@@ -170,3 +171,17 @@ def _line(points: Any) -> str:
             found.append(f"{'M' if begins else 'L'}{x:.1f} {y:.1f}")
         begins = False
     return "".join(found)
+
+
+def elasticities(rows: Sequence[Any], of: str) -> Markup:
+    """Return elasticities as bars to both sides of zero.
+
+    Args:
+        rows: :class:`fingerpad.results.slopes.Row`, from the top.
+        of: what they are of, in words.
+    """
+    most = max(abs(row.elasticity) for row in rows)
+    middle, scale = _WIDTH * 0.65, _WIDTH * 0.22 / most
+    drawn = [(row, _ROW * k + 6, middle + min(row.elasticity * scale, 0.0), abs(row.elasticity) * scale)
+             for k, row in enumerate(rows)]  # fmt: skip
+    return render("slopes.svg", rows=drawn, middle=middle, width=_WIDTH, foot=_ROW * len(rows) + 4, of=of)

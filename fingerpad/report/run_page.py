@@ -10,12 +10,13 @@ from markupsafe import Markup
 
 from fingerpad.report import page as html
 from fingerpad.report import trust
-from fingerpad.report.charts import Panel, Series, chart
+from fingerpad.report.charts import Panel, Series, chart, elasticities
 from fingerpad.report.frames import conditions_of, frames
 from fingerpad.results.over_time import NOTE, without_parts_of_jumps
 from fingerpad.results.printing import remarks, table, timed
 from fingerpad.results.quantities import STEPS, in_table
 from fingerpad.results.result import Result
+from fingerpad.results.slopes import SLOPES, rows
 from fingerpad.results.spikes import Spikes
 from fingerpad.results.states import before_sliding, called
 from fingerpad.scene.messages import SceneError
@@ -34,6 +35,7 @@ _PICTURES = {
 }
 _FACE = "solid.png"  # on the first screen of a run without states to step through
 _MAX_STATES = 200  # of the pressure of ridges over time
+_MAX_SLOPES = 15  # of numbers that move friction most
 
 
 def page(result: Result) -> str:
@@ -47,7 +49,7 @@ def page(result: Result) -> str:
     return html.page(
         "run.html", f"fingerpad: {headline.sentence}", result=result, headline=headline, factor=_factor(result),
         name="" if result.folder is None else result.folder.name, verdict=trust.verdict(found), findings=found,
-        sure=_claims(result), frames=shown, scale=scale, face=face,
+        sure=_claims(result), frames=shown, scale=scale, face=face, slopes=_slopes(result),
         newtons=None if result.finger is None else result.finger, numbers=table(result), remarks=remarks(result),
         asked=list(_asked(result)), of_path=_of_path(result), sliding=_sliding(result), over_time=timed(result),
         receptors=_receptors(result), spikes=spikes, raster=None if spikes is None else _raster(result, spikes),
@@ -136,6 +138,17 @@ def _receptors(result: Result) -> list[tuple[str, ...]]:
             ridge = str(int(sites.number[merkel.argmax()]))
             rows.append((called(name, state.voltage), f"{merkel.max():.4g}", ridge, f"{meissner.max():.4g}"))
     return rows
+
+
+def _slopes(result: Result) -> tuple[Markup, str]:
+    """Return the largest elasticities of friction as bars, or why there are none; neither of a run without."""
+    if SLOPES not in result.record:
+        return Markup(), ""
+    try:
+        most = [row for row in rows(result) if row.elasticity][:_MAX_SLOPES]
+        return (elasticities(most, "µ_app"), "") if most else (Markup(), "friction is zero")
+    except SceneError as error:
+        return Markup(), str(error)
 
 
 def _spikes(result: Result) -> tuple[Spikes | None, str]:

@@ -107,7 +107,7 @@ def attributes(result: ResultData) -> dict[str, Any]:
     found |= {"record": json.dumps(result.record)} if result.record else {}
     found |= {"outputs": json.dumps([each.to_dict() for each in result.outputs])} if result.outputs else {}
     if result.finger is not None:
-        found |= {"finger": json.dumps({"source": result.finger.source, "carried": result.finger.carried})}
+        found |= {"whole_finger": json.dumps({"source": result.finger.source, "carried": result.finger.carried})}
     given = {key: _attribute(value) for key, value in flat(parameters).items() if value is not None}
     return found | {"parameters": json.dumps(parameters)} | given
 

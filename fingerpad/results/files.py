@@ -20,7 +20,7 @@ from uuid import uuid4
 from fingerpad.scene.messages import SceneError, clip
 from variational.files import read
 
-FORMAT = 3
+FORMAT = 4
 """Number of the format of ``summary.json`` and ``sweep.json``; one more where older files are read otherwise."""
 _MAX_BYTES = 200_000_000  # of a file that is read; a summary of a thousand loads has two millions
 _PATH = 80  # characters of a path in a sentence

@@ -93,7 +93,7 @@ def parts(data: "xarray.Dataset") -> dict[str, Any]:
         found |= {name: about.get(name, "") for name in ("failure", "interrupted")}
         found |= {"notes": _lines(about, "notes"), "cautions": _cautions(about)}
         found |= {"cost": Cost(**{each.name: _plain(about[each.name]) for each in fields(Cost)})}
-        kept = json.loads(about["finger"]) if "finger" in about else None
+        kept = json.loads(about["whole_finger"]) if "whole_finger" in about else None
         finger = None if kept is None else _finger(arrays, kept, outputs, scene.slices)
         return found | {"model": model_name(about["model"]), "finger": finger}
     except (KeyError, ValueError, TypeError, IndexError, AttributeError) as error:  # a SceneError is a ValueError

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fingerpad import launcher
-from fingerpad.results import dataset, loading, printing
+from fingerpad.results import dataset, loading, printing, slopes
 from fingerpad.results.data import ResultData, checked, valued
 from fingerpad.results.headline import Headline, headline
 from fingerpad.results.quantities import Output
@@ -116,6 +116,26 @@ class Result(ResultData):
         from fingerpad.results.spikes import afferents  # SciPy's signals
 
         return afferents(self, laws)
+
+    def sensitivities(self, quantity: str = "mu_app", state: str = "") -> "xarray.Dataset":
+        """Return the derivatives of a quantity by every number of the scene, the largest elasticities first.
+
+        They are those of the equations, without a second run (:mod:`variational.sensitivity`), for the points in
+        contact as they are. A number without effect has the slope 0.
+
+        Args:
+            quantity: ``mu_app``, ``f_t``, ``f_electrostatic``, ``contact_length``, ``p_max``, and ``bone_height`` under
+                a force or ``f_ext`` under a prescribed height.
+            state: a named state; by default full slip.
+
+        Returns:
+            Along ``number``, the dotted keys: ``value``, ``slope`` (SI), ``elasticity`` (% per %), and ``lowest`` and
+            ``highest``, between which the same ridges touch, by straight extrapolation.
+
+        Raises:
+            SceneError: the run was without ``output.sensitivities``, or the state or quantity has no slopes.
+        """
+        return slopes.dataset(self, quantity, state)
 
     def animate(self, path: "str | Path") -> Path:
         """Write the run as a moving picture, WebP or GIF by the end of the file's name; return the file.

@@ -16,6 +16,7 @@ from fingerpad.model.finger import Step, meshed
 from fingerpad.model.options import FingerModel, by_rule, plan
 from fingerpad.model.report import Clock, Report
 from fingerpad.model.simulation import RestartRequired, Simulation
+from fingerpad.model.slopes import of_run
 from fingerpad.model.state import broken, force_error
 from fingerpad.results import fields
 from fingerpad.results.data import checked, valued
@@ -290,11 +291,10 @@ class _Attempt:
         mu_0, totals = coefficient(scene), record.totals()
         left = max(self._model.numerics.tolerance, totals["floor"])
         error = force_error(unknowns, left, finger.solver.force_scale)
-        more |= {
-            "unknowns_path": finger.unknowns,
-            "path_mesh": None if self._model.mesh_file else self._model.mesh.model_dump(),
-            "omitted": [asdict(omission) for omission in self._model.omitted],
-        }
+        path_mesh = None if self._model.mesh_file else self._model.mesh.model_dump()
+        more |= {"unknowns_path": finger.unknowns, "path_mesh": path_mesh}
+        more |= {"omitted": [asdict(omission) for omission in self._model.omitted]}
+        more |= of_run(self._model, self.simulation, {} if estimate is None else estimate.base.states)
         seconds = finger.solver.timings.seconds | session.clock.seconds
         timed = {f"seconds_{phase}": value for phase, value in seconds.items()}
         more |= self._comm.bcast(timed | totals | {"force_error": error})

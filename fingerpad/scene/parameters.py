@@ -206,8 +206,34 @@ class Output(Table):
     followed on elements twice as large, and the named states are solved again on the mesh that is given, finest where
     contact ends. With viscous layers the path is followed on the mesh that is given, and once more on elements twice as
     large. With an accuracy errors are always estimated."""
+    sensitivities: Switch = False
+    """Whether the slopes of friction, contact length and pressure by every number of the scene are computed, at full
+    slip and in contact without friction; see :mod:`variational.sensitivity`."""
     each_load: Switch = True
     """Whether the finger and its skin are drawn at the end of each load. A load over time has one end."""
+
+    def refuse(self, force: float | None, friction: Any, contact: Formulation, viscous: Any) -> None:
+        """Refuse sensitivities of what has none.
+
+        Args:
+            force: on the whole finger.
+            friction: coefficient or law of friction.
+            contact: the formulation.
+            viscous: the viscous layers.
+
+        Raises:
+            ValueError: the key, and the remedy.
+        """
+        remedies = {
+            f"force is {show(force)} N, of slices under forces of their own; give f_ext": force is not None,
+            "layers are viscous, so that states depend on their past; leave their branches out": bool(viscous),
+            "friction has a memory, so that states depend on their past; take another law": getattr(
+                friction, "memory", None
+            ) is not None,
+            "contact.formulation is of multipliers that depend on the path; take penalty": contact.tolerance > 0,
+        }  # fmt: skip
+        for words in (words for words, true in remedies.items() if true and self.sensitivities):
+            raise ValueError(f"output.sensitivities is true and {words}, or leave the sensitivities out")
 
 
 class Numerics(Table):

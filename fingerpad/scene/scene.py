@@ -131,6 +131,7 @@ class Scene(Table):
             refuse_contradictions(self.history, given, self.output.errors, steps, follows)
             refuse_floating(() if adheres(self.adhesion) else self.history)
         refuse_memory(self.force, self.friction)
+        self.output.refuse(self.force, self.friction, self.contact.law, viscous_layers(self.materials))
         refuse_beside(viscous_layers(self.materials), {"force": self.force, "accuracy": self.accuracy})
         refuse_thickness(self.roughness, self.h_0)
         refuse_drives(self.drives(), self.electric, self.geometry.sc_thickness)
@@ -331,8 +332,7 @@ def from_data(data: Mapping[str, Any]) -> Scene:
     Raises:
         SceneError: the first key at fault.
     """
-    data = plain(data)
-    if not isinstance(data, dict):
+    if not isinstance(data := plain(data), dict):
         raise SceneError(f"a scene is {show(data)}; it must be a table of keys")
     return Scene(**data)
 

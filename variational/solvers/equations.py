@@ -160,6 +160,14 @@ class Equations:
             local = self.local(rows)
             f.array_w[local] = self.stiffness * (self.layout.moved(x, local, self.problem.bone.value) - values)
 
+    def forces(self, form: fem.Form, f: PETSc.Vec) -> None:
+        """Write a form in the displacement's test function into a vector, zero in prescribed rows; collective."""
+        self._nodal[:] = 0.0
+        fem.assemble_vector(self._nodal, form)
+        f.set(0.0)
+        self.layout.add_to_unknowns(self._nodal, f)
+        f.array_w[self.local(self.prescribed_rows())] = 0.0
+
     def _blame(self, x: PETSc.Vec) -> None:
         """Find out why a residual is not finite; collective."""
         suspects = {

@@ -1,0 +1,243 @@
+"""Slopes of full slip by the numbers of a scene: those of whole solves, of UFL, on two ranks; refusals and doors."""
+
+import io
+from contextlib import redirect_stdout
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+import ufl
+from dolfinx import fem
+from mpi4py import MPI
+
+import fingerpad as fp
+from fingerpad.cli import sensitivities
+from fingerpad.model.options import FingerModel, by_rule, plan
+from fingerpad.model.simulation import Simulation
+from fingerpad.model.slopes import state_slopes
+from fingerpad.results.slopes import rows
+from fingerpad.scene import SceneError, from_data
+from tests.runs import no_pictures
+from tests.small_finger import NINE
+from variational import sensitivity
+from variational.solvers.coupling import AcceptedState
+
+pytestmark = pytest.mark.slow
+LEAN = {"errors": False, "receptors": False, "sensitivities": True}
+EXACT = {"tolerance": 1e-12, "coupling_tolerance": 1e-11}
+SCENE = NINE | {"f_ext": 1.0, "output": LEAN, "numerics": EXACT}
+DERJAGUIN = {"friction": {"law": "Derjaguin", "mu_f": 0.2, "tau_0": 1e3}}
+LAYER = "materials.stratum_corneum"
+KEYS = (
+    "f_ext", "voltage", "friction.mu_f", "friction.tau_0", "roughness.young", "roughness.h_rms", "roughness.wavelength",
+    "electric.d_i", "electric.eps_i", f"{LAYER}.shear_modulus", f"{LAYER}.alpha", f"{LAYER}.poisson",
+    "materials.dermis.shear_modulus", "contact.eps_n",
+)  # fmt: skip
+BEHIND = 3e-3  # m, of anchors, so that no point can stick
+OF = ("mu_app", "contact_length", "p_max", "bone_height")
+
+
+class Solved:
+    """A path's end with its slopes, from which other ends are solved for as wholes."""
+
+    def __init__(self, changes, comm=MPI.COMM_WORLD):
+        scene = by_rule(from_data(SCENE | changes))
+        model = FingerModel(scene, plan(scene))
+        simulation = Simulation(model, comm)
+        assert simulation.run() is None
+        self.finger, self.state, kept = simulation.finger, simulation.states[-1], {}
+
+        class Spied(sensitivity.Linearised):
+            def slopes(spied, varied):
+                kept.update(varied=varied, measure=spied.measure, fixed=spied._fixed)
+                return super().slopes(varied)
+
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr("fingerpad.model.slopes.Linearised", Spied)
+            self.found = state_slopes(model, self.finger, self.state.load_number)
+        self.varied, self.measure, self.fixed = kept["varied"], kept["measure"], kept["fixed"]
+
+    def at(self, key, part):
+        """Return the quantities where a number is changed by a part of itself."""
+        coupling, solver, history = self.finger.coupling, self.finger.solver, self.finger.problem.history
+        place = AcceptedState.of(coupling)
+        sensitivity.impose(coupling, self.varied[key](part))
+        history.accept({"anchor": history.accepted["anchor"] + np.sign(solver.reaction[0]) * BEHIND})
+        voltage = float(self.finger.problem.voltage.value)
+        solver.new_load(replace(solver.control), voltage, slipping=True, on_cone=False)
+        coupling.solve()
+        found = self.measure(self.finger.observer.state(), solver.bone)
+        sensitivity.impose(coupling, self.varied[key](0.0))
+        place.restore(coupling)
+        return found
+
+    def slope(self, quantity, key):
+        """Return a slope for one whole of the number's amount."""
+        return self.found.slopes[quantity][key] * abs(self.found.values[key])
+
+
+@cache
+def solved(voltage, changes=()):
+    return Solved({"voltage": voltage} | DERJAGUIN | dict(changes))
+
+
+# -- beside whole solves -----------------------------------------------------------------------------------
+@pytest.mark.parametrize("key", KEYS)
+@pytest.mark.parametrize("voltage", [0.0, 50.0, 100.0])
+def test_slopes_are_those_of_whole_solves(voltage, key):
+    """Central differences of whole solves, to 1e-6 of a slope, beside what the solves' tolerance leaves of them."""
+    agree(solved(voltage), key, OF)
+
+
+def agree(mine, key, quantities):
+    """Assert that slopes are those of whole solves a part of 2e-5 to both sides: in 1e-4 points come and go.
+
+    Tolerances of 1e-12 of the forces and 1e-11 of the air gaps leave up to 2e-7 of a quantity in the quotients.
+    """
+    h = 2e-5
+    more, less = mine.at(key, h), mine.at(key, -h)
+    for quantity in quantities:
+        assert (more[quantity] - less[quantity]) / (2 * h) == pytest.approx(
+            mine.slope(quantity, key), rel=1e-6, abs=3e-7 * abs(more[quantity])
+        ), (key, quantity)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"contact": {"formulation": "nitsche", "gamma_0": 1.0}},
+        {"numerics": EXACT | {"element": "P2-P1"}},
+        {"contact": {"length": "gap"}},
+        {"history": ({"name": "press", "bone_height": -40e-6}, {"name": "charge", "voltage": 100.0},
+                     {"name": "slide", "bone_x": 1e-3, "until_full_slip": True})},
+    ],
+    ids=["nitsche", "mixed", "gap", "height"],
+)  # fmt: skip
+def test_slopes_of_other_forms(changes):
+    """Contact by Nitsche's method, a pressure of its own, lengths by the gap, and a bone held by its height."""
+    data = ({} if "history" in changes else {"voltage": 100.0}) | changes
+    scene = {key: x for key, x in SCENE.items() if key != "f_ext" or "history" not in changes}
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(globals(), "SCENE", scene)
+        mine = Solved(data)
+    assert not mine.found.why
+    keys = ["roughness.h_rms", f"{LAYER}.shear_modulus", f"{LAYER}.poisson", "friction"]
+    for key in [*keys, "history[0].bone_height"] if "history" in changes else [*keys, "f_ext"]:
+        agree(mine, key, ("mu_app", "contact_length"))
+
+
+@pytest.mark.parametrize("key", ["voltage", "f_ext", "roughness.h_rms"])
+def test_remainder_is_of_second_order(key):
+    """What the slope leaves of a change falls to a quarter with half of the change, within what third order adds."""
+    mine, h = solved(100.0), 2e-3
+    now = mine.at(key, 0.0)["mu_app"]
+    left = [mine.at(key, part)["mu_app"] - now - part * mine.slope("mu_app", key) for part in (h, h / 2)]
+    assert left[0] / left[1] == pytest.approx(4.0, abs=0.3)
+
+
+def test_residual_is_derived_as_by_ufl():
+    """The difference quotient of the nodal forces by the voltage, beside UFL's derivative of the weak form."""
+    mine = solved(100.0)
+    problem, solver = mine.finger.problem, mine.finger.solver
+    u = ufl.variable(problem.voltage)
+    form = ufl.replace(problem.weak[0], {problem.voltage: u})
+    exact, vector = fem.form(ufl.diff(form, u)), solver.layout.create_vector()
+    problem.guess.value = -0.5  # no point on the cone sticks
+    solver.equations.forces(exact, vector)
+    f = solver.layout.create_vector()
+
+    def residual(part):
+        sensitivity.impose(mine.finger.coupling, mine.varied["voltage"](part))
+        solver.equations.residual(solver.x, f)
+        return f.array_r.copy()
+
+    step = sensitivity.STEP
+    found = (residual(step) - residual(-step)) / (2 * step * mine.found.values["voltage"])
+    residual(0.0)
+    assert found == pytest.approx(vector.array_r, abs=1e-8 * np.abs(vector.array_r).max())
+
+
+def test_number_without_effect_has_no_slope():
+    """The tangential stiffness does not act where all points slip, and the roughness not without a voltage."""
+    assert solved(100.0).found.slopes["mu_app"]["contact.eps_t"] == 0
+    assert solved(0.0).found.slopes["mu_app"]["roughness.h_rms"] == 0
+    assert solved(0.0).found.slopes["f_t"]["f_ext"] > 0
+
+
+@pytest.mark.mpi
+def test_slopes_do_not_depend_on_the_ranks():
+    """Within what the solves' tolerance leaves of the states."""
+    changes = {"voltage": 100.0}
+    mine, alone = Solved(changes), Solved(changes, MPI.COMM_SELF)
+    for quantity in OF:
+        for key, slope in alone.found.slopes[quantity].items():
+            size = abs(getattr(alone.state, quantity) / (alone.found.values[key] or 1.0))
+            assert mine.found.slopes[quantity][key] == pytest.approx(slope, rel=1e-6, abs=1e-8 * size), (quantity, key)
+
+
+# -- doors -------------------------------------------------------------------------------------------------
+@pytest.fixture(scope="module")
+def ran(tmp_path_factory):
+    """A run with errors, whose slopes are those of the final mesh; its folder, and the result."""
+    folder = tmp_path_factory.mktemp("slopes") / "run"
+    with no_pictures():
+        result = fp.run(
+            from_data(NINE | {"f_ext": 1.0, "voltage": 100.0, "output": LEAN | {"errors": True}}), out=folder
+        )
+    return folder, result
+
+
+def test_result_has_the_slopes_of_its_final_mesh(ran):
+    """As a table of its folder too; friction goes with its coefficient, less what the contact shrinks."""
+    folder, result = ran
+    data = fp.Result.load(folder).sensitivities("mu_app")
+    assert data.identical(result.sensitivities("mu_app"))
+    found = dict(zip(data.number.values, data.elasticity.values, strict=True))
+    assert found["friction"] == pytest.approx(1.0, abs=0.05)
+    assert (np.diff(np.abs(data.elasticity)) <= 0).all()
+    first = data.isel(number=0)
+    assert first.lowest < first.value < first.highest
+
+
+def test_command_prints_them(ran, tmp_path):
+    """The largest first, and numbers without effect too."""
+    with redirect_stdout(io.StringIO()) as out:
+        assert sensitivities.main([str(ran[0]), "--csv", str(tmp_path / "slopes.csv")]) == 0
+    lines = [line.split() for line in out.getvalue().splitlines()]
+    assert lines[3][0] == rows(ran[1])[0].key
+    assert ["contact.eps_t", "5e+10", "Pa/m", "0", "0"] in [line[:5] for line in lines]
+    assert len((tmp_path / "slopes.csv").read_text().splitlines()) == 1 + len(rows(ran[1]))
+
+
+def test_frictionless_contact_has_slopes():
+    """Of uncharged normal contact on half a finger: the bone sinks as its force grows, and contact grows."""
+    scene = from_data(NINE | {"f_ext": 1.0, "voltage": 0.0, "friction": 0.0, "output": LEAN, "numerics": EXACT})
+    with no_pictures():
+        result = fp.run(scene.replace(history=[{"name": "press", "f_ext": 1.0}]))
+    found = result.sensitivities("bone_height").slope.sel(number="history[0].f_ext")
+    assert found < 0 and result.sensitivities("contact_length").slope.sel(number="history[0].f_ext") > 0
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"f_ext": None, "force": "0.01 N"}, "force is 0.01 N, of slices under forces of their own; give f_ext"),
+        ({"contact": {"formulation": "augmented"}}, "multipliers that depend on the path; take penalty"),
+        ({"friction": {"law": "Occlusion", "mu_dry": 0.2, "mu_wet": 0.4}}, "friction has a memory"),
+    ],
+)  # fmt: skip
+def test_scene_without_slopes_is_refused(changes, words):
+    data = {key: x for key, x in (SCENE | changes).items() if x is not None}
+    with pytest.raises(SceneError, match=words):
+        from_data(data)
+
+
+def test_what_has_no_slopes_is_refused(ran):
+    result = ran[1]
+    with pytest.raises(SceneError, match="area has no sensitivities; quantities are mu_app, f_t"):
+        result.sensitivities("area")
+    with pytest.raises(SceneError, match="charged normal contact has no sensitivities: points stick"):
+        result.sensitivities("mu_app", "charged")
+    with pytest.raises(SceneError, match="run it with output.sensitivities=true"):
+        fp.run(model="cylinders").sensitivities()
