@@ -47,4 +47,4 @@ def _draw(file: Path, found: Sequence[dict[str, Any]]) -> None:
         most = [row for row in found if row["elasticity"]][:_DRAWN]
         ax.barh([row["key"] for row in most], [row["elasticity"] for row in most], color=style.CATEGORIES[0])
         ax.invert_yaxis()
-        ax.set(xlabel=style.plain("elasticity (% for 1 % of the number)"))
+        ax.set(xlabel=style.plain("elasticity (% for 1 %)"))
