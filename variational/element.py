@@ -206,7 +206,7 @@ def write(
     """Write the numbers of each layer's material into the fields of laws by group, as of :func:`grouped`."""
     for tags, law in laws.items():
         for name in solids[tags[0]].names():
-            field = getattr(law, name)
+            field = law.number(name)
             for tag in tags:
                 field.x.array[cell_tags.find(tag)] = solids[tag].number(name)
             field.x.scatter_forward()
