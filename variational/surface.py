@@ -105,7 +105,8 @@ class Surface:
         element = basix.create_element(basix.ElementFamily.P, basix.CellType.interval, nodes.shape[1] - 1)
 
         def places(xi: Array) -> Array:
-            return np.einsum("pk,fki->fpi", element.tabulate(0, xi[:, None])[0, :, :, 0], nodes)
+            shapes: Array = np.asarray(element.tabulate(0, xi[:, None]), dtype=float)[0, :, :, 0]
+            return np.asarray(np.einsum("pk,fki->fpi", shapes, nodes))
 
         space = fem.functionspace(self.mesh, ("Discontinuous Lagrange", len(self.weights) - 1, (len(parts), 2)))
         ways, component = fem.Function(space), fem.Function(self.history_space)
