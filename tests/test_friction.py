@@ -213,3 +213,14 @@ def test_full_slip_bears_both_parts(formulation, sign):
     assert expected == pytest.approx(LAW.mu_f * float(loads.f_contact[0]) + adhesion, rel=0.01)
     assert float(loads.f_friction[0]) == pytest.approx(-sign * expected, rel=2 * CONE_ROUNDOFF)
     assert made.solver.reaction[0] == pytest.approx(-sign * expected, abs=1e-7 * FORCE)
+
+
+def test_a_limit_of_ones_own_does_not_go_by_the_area_of_its_base():
+    class Half(Derjaguin):
+        def limit(self, p):
+            return super().limit(p) / 2
+
+    class Same(Derjaguin):
+        pass
+
+    assert (Derjaguin(0.2, 1e3).by_area, Same(0.2, 1e3).by_area, Half(0.2, 1e3).by_area) == (True, True, False)

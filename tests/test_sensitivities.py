@@ -43,7 +43,7 @@ class Solved:
 
     def __init__(self, changes, comm=MPI.COMM_WORLD):
         scene = by_rule(from_data(SCENE | changes))
-        model = FingerModel(scene, plan(scene))
+        self.model = model = FingerModel(scene, plan(scene))
         simulation = Simulation(model, comm)
         assert simulation.run() is None
         self.finger, self.state, kept = simulation.finger, simulation.states[-1], {}
@@ -207,7 +207,29 @@ def test_command_prints_them(ran, tmp_path):
     lines = [line.split() for line in out.getvalue().splitlines()]
     assert lines[3][0] == rows(ran[1])[0].key
     assert ["contact.eps_t", "5e+10", "Pa/m", "0", "0"] in [line[:5] for line in lines]
+    assert "adhesion.p_0 is left out: adhesion is" in out.getvalue()
     assert len((tmp_path / "slopes.csv").read_text().splitlines()) == 1 + len(rows(ran[1]))
+
+
+def test_ends_are_values_that_a_key_may_have(ran):
+    """The other ends are infinite: at all such values the same ridges touch."""
+    found = {row.key: row for row in rows(ran[1])}
+    assert all(row.lowest > 0 or row.lowest == -np.inf for key, row in found.items() if key.startswith("electric."))
+    assert any(np.isfinite(row.highest) for row in found.values())
+    poisson = found["materials.stratum_corneum.poisson"]
+    assert poisson.highest < 0.5 or poisson.highest == np.inf
+
+
+def test_run_keeps_its_states_where_slopes_are_lost():
+    """The state says why, and the numbers and the guess of the problem are those of before."""
+    mine = solved(100.0)
+    problem, voltage = mine.finger.problem, float(mine.finger.problem.voltage.value)
+    guess = float(problem.guess.value)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(np.linalg, "solve", lambda *_: (_ for _ in ()).throw(np.linalg.LinAlgError("Singular matrix")))
+        lost = state_slopes(mine.model, mine.finger, mine.state.load_number)
+    assert lost.why == "Singular matrix" and lost.slopes is None
+    assert (float(problem.guess.value), float(problem.voltage.value)) == (guess, voltage)
 
 
 def test_frictionless_contact_has_slopes():

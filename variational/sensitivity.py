@@ -57,7 +57,7 @@ _VALUES = [f.name for f in fields(SurfaceState) if f.name != "history"]
 
 @dataclass(frozen=True)
 class Numbers:
-    """All that a state of equilibrium depends on, but for the shape of the body."""
+    """All that a state of equilibrium depends on, but for the shape of the body; the voltage in V."""
 
     solids: Mapping[int, Material]
     """Material of each layer's tag."""
@@ -65,7 +65,6 @@ class Numbers:
     closure: Closure | None
     control: Control
     voltage: float
-    """(V)"""
 
 
 @dataclass(frozen=True)
@@ -75,10 +74,8 @@ class Slopes:
     by_step: dict[str, float]
     """Of each quantity, for one scale of the number."""
     down: float
-    """How far the number can fall, in its scale, until a ridge comes or goes, by straight extrapolation; infinite where
-    none does."""
     up: float
-    """How far it can rise, likewise."""
+    """How far the number can fall and rise, in its scale, until a ridge comes or goes, by straight extrapolation."""
 
 
 Varied = Callable[[float], Numbers]
@@ -164,14 +161,10 @@ class Linearised:
         self._dd = fem.Function(problem.d_eq.function_space)
         of_gaps = [(problem.d_eq, self._dd)]
         self._ds = None if problem.share is None else fem.Function(problem.d_eq.function_space)
-        if self._ds is not None:
-            of_gaps.append((problem.share, self._ds))
-        self._along = problem.surface.compile(
-            [
-                sum(ufl.derivative(ufl.as_ufl(each), *way) for way in (*ways, *of_gaps))
-                for each in self.observer.evaluated
-            ]
-        )
+        of_gaps += [] if self._ds is None else [(problem.share, self._ds)]
+        ways += of_gaps
+        values = [ufl.as_ufl(each) for each in self.observer.evaluated]
+        self._along = problem.surface.compile([sum(ufl.derivative(each, *way) for way in ways) for each in values])
         if self._charged:
             by_gaps = sum(ufl.derivative(problem.weak[0], *way) for way in of_gaps)
             self._by_gaps = fem.form(by_gaps, jit_options=jit.OPTIONS)
@@ -192,7 +185,15 @@ class Linearised:
         ksp.setUp()
         self.solver.counts.factorisations += 1
         if pc.getFailedReason():
+            self._leave()
             raise NotConverged(linear_failure(pc)[0], False)
+
+    def _leave(self) -> None:
+        """Leave the state as it was."""
+        self._place.restore(self.coupling)
+        self.problem.guess.value = self._guess
+        self._ksp.destroy()
+        self._K.destroy()
 
     def _solve(self, right: list[Array]) -> list[Array]:
         """Return minus K^-1 of right sides, this rank's parts; collective."""
@@ -264,11 +265,10 @@ class Linearised:
 
     def _set_gaps(self, dd: Array) -> None:
         """Write a change of the air gaps (m), and that of the ridges' shares of the voltage."""
-        written = [(self._dd, dd)]
+        written, surface = [(self._dd, dd)], self.problem.surface
         share, d_eq = self.problem.interface.share, self.coupling.d_eq
         if self._ds is not None and share is not None:
             written.append((self._ds, quotient(lambda part: share(d_eq * (1 + part)), _OF_MOVE) / d_eq * dd))
-        surface = self.problem.surface
         for function, values in written:
             function.x.array[surface.pairs[:, 0]] = values[surface.ridge]
             function.x.scatter_forward()
@@ -285,6 +285,12 @@ class Linearised:
     # -- all numbers -----------------------------------------------------------------------------------
     def slopes(self, varied: Mapping[str, Varied]) -> dict[str, Slopes]:
         """Return the derivatives by each number, and leave the state as it was, with the numbers at 0; collective."""
+        try:
+            return self._by(varied)
+        finally:
+            self._leave()
+
+    def _by(self, varied: Mapping[str, Varied]) -> dict[str, Slopes]:
         self._skin = self.observer.state()
         none = np.zeros_like(self.coupling.d_eq)
         unit = [np.eye(len(none))[k] for k in range(len(none) if self._charged else 0)]
@@ -294,8 +300,7 @@ class Linearised:
             self.solver.equations.forces(self._by_gaps, f)
             right.append(f.array_r.copy())
         fixed = {key: self._fixed(numbers) for key, numbers in varied.items()}
-        for numbers in [*varied.values()][:1]:
-            impose(self.coupling, numbers(0.0))
+        impose(self.coupling, next(iter(varied.values()))(0.0))
         self._place.restore(self.coupling)
         solved = self._solve([*right, *(each.residual for each in fixed.values())])
         B, of_numbers = solved[: len(unit)], dict(zip(fixed, solved[len(unit) :], strict=True))
@@ -313,10 +318,6 @@ class Linearised:
                 skin = skin + sum(d * each for d, each in zip(dd, skins, strict=True))
                 a = a + sum(d * b for d, b in zip(dd, B, strict=True))
             found[key] = self._slopes(a, skin, fixed[key].explicit)
-        self._place.restore(self.coupling)
-        self.problem.guess.value = self._guess
-        self._ksp.destroy()
-        self._K.destroy()
         return found
 
     def _slopes(self, dx: Array, change: Array, explicit: Array) -> Slopes:

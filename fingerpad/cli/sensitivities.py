@@ -8,7 +8,7 @@ from fingerpad.cli import output
 from fingerpad.cli.arguments import Parser, echo, path
 from fingerpad.results.quantities import STEPS, Output
 from fingerpad.results.result import Result
-from fingerpad.results.slopes import rows
+from fingerpad.results.slopes import left_out, rows
 
 _EXAMPLES = """
     fingerpad sensitivities results/mine
@@ -34,7 +34,9 @@ def main(argv: Sequence[str]) -> int:
     ]
     echo(f"Slopes of {STEPS[args.of].words}, SI; elasticity: % of it for 1 % of the number:")
     echo(output.text(_COLUMNS, printed))
-    echo("Between lowest and highest the same ridges touch, by straight extrapolation.")
+    echo("Between lowest and highest the same ridges touch, by straight extrapolation; inf: at all values allowed.")
+    for key, why in left_out(result, args.state).items():
+        echo(f"{key} is left out: {why}.")
     output.write_files(args, _COLUMNS, found, _draw)
     return 0
 

@@ -23,6 +23,7 @@ from fingerpad.scene.controls import number_of
 from fingerpad.scene.keys import by_name
 from variational.contact.formulation import SurfaceState
 from variational.sensitivity import STEP, Linearised, Numbers, impose
+from variational.solvers.outcome import NotConverged
 from variational.solvers.target import Control
 
 Array = NDArray[np.float64]
@@ -125,7 +126,7 @@ def state_slopes(model: FingerModel, finger: Finger, load_number: int) -> StateS
             if not (other is not None and math.isclose(mine, other, rel_tol=_SAME)):
                 raise ValueError("the state is not one of the scene's last loads, by whose numbers there are no slopes")
         linear = Linearised(coupling, partial(quantities_of, finger))
-    except ValueError as error:
+    except (ValueError, NotConverged) as error:  # a run keeps its states where slopes are lost
         return StateSlopes(str(error))
     scales, varied, left_out = dict[str, float](), {}, dict[str, str]()
     for key, value in model.given.items():
@@ -140,7 +141,11 @@ def state_slopes(model: FingerModel, finger: Finger, load_number: int) -> StateS
         except ValueError as error:
             left_out[key] = str(error)
     impose(coupling, now)
-    found = linear.slopes(varied)
+    try:
+        found = linear.slopes(varied)
+    except (ValueError, np.linalg.LinAlgError) as error:
+        impose(coupling, now)
+        return StateSlopes(str(error))
     names = next(iter(found.values())).by_step
     return StateSlopes(
         values={key: model.given[key] for key in found},

@@ -28,7 +28,8 @@ class Row(NamedTuple):
     elasticity: float
     """Per cent of the quantity for one per cent of the number."""
     lowest: float
-    """Value of the number to which the same ridges touch, by straight extrapolation; minus infinity without one."""
+    """Value of the number to which the same ridges touch, by straight extrapolation; minus infinity where they do so at
+    all values that the key may have."""
     highest: float
 
 
@@ -43,6 +44,32 @@ def rows(result: ResultData, quantity: str = "mu_app", state: str = "") -> list[
     Raises:
         SceneError: the run has no slopes, or none of this state or quantity; in one sentence.
     """
+    name, found = _kept(result, state)
+    if quantity not in found["slopes"]:
+        raise SceneError(f"{clip(quantity)} has no sensitivities; quantities are {', '.join(found['slopes'])}")
+    at, keys = getattr(result.named[name], quantity), by_name(type(result.scene))
+
+    def row(key: str, slope: float) -> Row:
+        value = found["values"][key]
+        down, up = (np.inf if end is None else end for end in found["ends"][key])
+        elasticity, lowest, highest = slope * value / at if at else np.nan, value - down, value + up
+        if key not in keys:
+            return Row(key, value, "", slope, elasticity, lowest, highest)
+        if (limits := keys[key].limits) is not None and limits.sides == 1:
+            lowest = lowest if lowest >= limits.low else -np.inf  # no ridge comes or goes at a value that is allowed
+            highest = highest if highest <= limits.high else np.inf
+        return Row(key, value, keys[key].unit, slope, elasticity, lowest, highest)
+
+    return sorted((row(*each) for each in found["slopes"][quantity].items()), key=lambda row: -abs(row.elasticity))
+
+
+def left_out(result: ResultData, state: str = "") -> dict[str, str]:
+    """Return the numbers without slopes and why, by dotted key; arguments and errors of :func:`rows`."""
+    return dict(_kept(result, state)[1].get("left_out", {}))
+
+
+def _kept(result: ResultData, state: str) -> tuple[str, dict[str, Any]]:
+    """Return the name of a state and what the record has of it."""
     kept: dict[str, Any] = result.record.get(SLOPES, {})
     if not kept:
         wanted = result.scene.output.sensitivities
@@ -54,17 +81,7 @@ def rows(result: ResultData, quantity: str = "mu_app", state: str = "") -> list[
     found = kept[name]
     if why := found.get("why"):
         raise SceneError(f"{WORDS[name]} has no sensitivities: {why}")
-    if quantity not in found["slopes"]:
-        raise SceneError(f"{clip(quantity)} has no sensitivities; quantities are {', '.join(found['slopes'])}")
-    at, keys = getattr(result.named[name], quantity), by_name(type(result.scene))
-
-    def row(key: str, slope: float) -> Row:
-        value = found["values"][key]
-        down, up = (np.inf if end is None else end for end in found["ends"][key])
-        elasticity = slope * value / at if at else np.nan
-        return Row(key, value, keys[key].unit if key in keys else "", slope, elasticity, value - down, value + up)
-
-    return sorted((row(*each) for each in found["slopes"][quantity].items()), key=lambda row: -abs(row.elasticity))
+    return name, found
 
 
 def dataset(result: ResultData, quantity: str = "mu_app", state: str = "") -> "xarray.Dataset":

@@ -68,6 +68,12 @@ class Part:
 class Friction(Law, ABC):
     """A law of friction."""
 
+    def __init_subclass__(cls) -> None:
+        """Take the default :meth:`limit_over` where a law has a limit of its own: that of its base is of another."""
+        super().__init_subclass__()
+        if "limit" in vars(cls) and "limit_over" not in vars(cls):
+            cls.limit_over = Friction.limit_over  # type: ignore[method-assign]
+
     memory: ClassVar[float | None] = None
     """Memory of a point that never touched, where the law has one: :meth:`limit` then takes the memory as a second
     argument with this default, and :meth:`remembered` is its rule (:mod:`variational.contact.aging`)."""
