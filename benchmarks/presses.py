@@ -169,7 +169,11 @@ def draw(docs: Path) -> Path:
         }
         return [there.get(voltage) for voltage in VOLTAGES]
 
-    return harness.page(docs, "presses", "python3 -m benchmarks.presses", globals() | {"every": every, "at": at})
+    def worst(finger: str) -> float:
+        return max(abs(value) for f_ext in FORCES for value in at(finger, f_ext) if value is not None)
+
+    names = {"every": every, "at": at, "worst": worst}
+    return harness.page(docs, "presses", "python3 -m benchmarks.presses", globals() | names)
 
 
 if __name__ == "__main__":

@@ -213,23 +213,17 @@ def test_command_prints_them(ran, tmp_path):
 
 def test_ends_are_values_that_a_key_may_have(ran):
     """The other ends are infinite: at all such values the same ridges touch."""
-    found = {row.key: row for row in rows(ran[1])}
-    assert all(row.lowest > 0 or row.lowest == -np.inf for key, row in found.items() if key.startswith("electric."))
-    assert any(np.isfinite(row.highest) for row in found.values())
-    poisson = found["materials.stratum_corneum.poisson"]
-    assert poisson.highest < 0.5 or poisson.highest == np.inf
+    assert all(each.lowest > 0 or each.lowest == -np.inf for each in rows(ran[1]) if each.key.startswith("electric."))
 
 
 def test_run_keeps_its_states_where_slopes_are_lost():
     """The state says why, and the numbers and the guess of the problem are those of before."""
     mine = solved(100.0)
-    problem, voltage = mine.finger.problem, float(mine.finger.problem.voltage.value)
-    guess = float(problem.guess.value)
+    before = [float(each.value) for each in (numbers := [mine.finger.problem.guess, mine.finger.problem.voltage])]
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(np.linalg, "solve", lambda *_: (_ for _ in ()).throw(np.linalg.LinAlgError("Singular matrix")))
+        patch.setattr(np.linalg, "solve", lambda *_: np.linalg.inv(np.zeros((1, 1))))  # singular
         lost = state_slopes(mine.model, mine.finger, mine.state.load_number)
-    assert lost.why == "Singular matrix" and lost.slopes is None
-    assert (float(problem.guess.value), float(problem.voltage.value)) == (guess, voltage)
+    assert lost.why == "Singular matrix" and before == [float(each.value) for each in numbers]
 
 
 def test_frictionless_contact_has_slopes():

@@ -84,7 +84,7 @@ Measure = Callable[[SurfaceState, Array], Mapping[str, float]]
 """Returns quantities of a skin and of the bone's translation (m), shape (2,); collective."""
 
 
-def quotient(values: Callable[[float], Array], step: float) -> Array:
+def _quotient(values: Callable[[float], Array], step: float) -> Array:
     """Return the derivative at zero by a central difference quotient."""
     return np.asarray((values(step) - values(-step)) / (2 * step))
 
@@ -224,7 +224,7 @@ class Linearised:
             found = self.measure(self._skin, solver.bone) if self.problem.interface.adhesion else {}  # else without
             return np.concatenate([f.array_r, _stack(self.observer.state()).ravel(), gaps, [*found.values()]])
 
-        residual, skin, gaps, explicit = np.split(quotient(values, STEP), np.cumsum(sizes))
+        residual, skin, gaps, explicit = np.split(_quotient(values, STEP), np.cumsum(sizes))
         return _Fixed(residual, skin.reshape(_stack(self._skin).shape), gaps, explicit)
 
     def _pressures(self, state: SurfaceState) -> Array:
@@ -249,7 +249,7 @@ class Linearised:
         assert closure is not None
         if (known := closure(p_c).derivative) is not None:
             return np.asarray(known, dtype=float)
-        by_part = quotient(lambda part: air_gaps(closure, p_c * (1 + part)), _OF_MOVE)
+        by_part = _quotient(lambda part: air_gaps(closure, p_c * (1 + part)), _OF_MOVE)
         return np.divide(by_part, p_c, out=np.zeros_like(p_c), where=p_c > 0)
 
     # -- along a change of the state -------------------------------------------------------------------
@@ -268,7 +268,7 @@ class Linearised:
         written, surface = [(self._dd, dd)], self.problem.surface
         share, d_eq = self.problem.interface.share, self.coupling.d_eq
         if self._ds is not None and share is not None:
-            written.append((self._ds, quotient(lambda part: share(d_eq * (1 + part)), _OF_MOVE) / d_eq * dd))
+            written.append((self._ds, _quotient(lambda part: share(d_eq * (1 + part)), _OF_MOVE) / d_eq * dd))
         for function, values in written:
             function.x.array[surface.pairs[:, 0]] = values[surface.ridge]
             function.x.scatter_forward()
@@ -280,7 +280,7 @@ class Linearised:
         moved = np.abs(change[gap], where=skin[gap] < _NEAR, out=np.zeros_like(skin[gap])).max(initial=0.0)
         most = max(self.problem.mesh.comm.allgather(float(moved)))
         step = min(_MOVE / most, _OF_MOVE) if most > 0 else _OF_MOVE
-        return quotient(lambda part: values(SurfaceState(*(skin + part * change)), part), step)
+        return _quotient(lambda part: values(SurfaceState(*(skin + part * change)), part), step)
 
     # -- all numbers -----------------------------------------------------------------------------------
     def slopes(self, varied: Mapping[str, Varied]) -> dict[str, Slopes]:
