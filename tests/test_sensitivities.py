@@ -98,9 +98,8 @@ def agree(mine, key, quantities):
     h = 2e-5
     more, less = mine.at(key, h), mine.at(key, -h)
     for quantity in quantities:
-        assert (more[quantity] - less[quantity]) / (2 * h) == pytest.approx(
-            mine.slope(quantity, key), rel=1e-6, abs=3e-7 * abs(more[quantity])
-        ), (key, quantity)
+        whole, left = (more[quantity] - less[quantity]) / (2 * h), 3e-7 * abs(more[quantity])
+        assert whole == pytest.approx(mine.slope(quantity, key), rel=1e-6, abs=left), (key, quantity)
 
 
 @pytest.mark.parametrize(
@@ -218,12 +217,13 @@ def test_ends_are_values_that_a_key_may_have(ran):
 
 def test_run_keeps_its_states_where_slopes_are_lost():
     """The state says why, and the numbers and the guess of the problem are those of before."""
-    mine = solved(100.0)
-    before = [float(each.value) for each in (numbers := [mine.finger.problem.guess, mine.finger.problem.voltage])]
+    mine, numbers = solved(100.0), ("guess", "voltage")
+    before = [float(getattr(mine.finger.problem, each).value) for each in numbers]
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(np.linalg, "solve", lambda *_: np.linalg.inv(np.zeros((1, 1))))  # singular
         lost = state_slopes(mine.model, mine.finger, mine.state.load_number)
-    assert lost.why == "Singular matrix" and before == [float(each.value) for each in numbers]
+    assert lost.why == "Singular matrix"
+    assert before == [float(getattr(mine.finger.problem, each).value) for each in numbers]
 
 
 def test_frictionless_contact_has_slopes():
