@@ -49,7 +49,7 @@ def test_section_has_the_target_at_the_key(target, over, wanted):
     """The model, run at the key that was found. Tolerance: of the key, 1e-6 of its range."""
     (root,) = fp.solve(over=over, **target).roots
     found = getattr(fp.run(root.scene, model="cylinders").full_slip, next(iter(target)))
-    assert found == pytest.approx(wanted, rel=2e-5) and root.number.value == pytest.approx(wanted, rel=2e-5)
+    assert found == pytest.approx(wanted, rel=2e-5) and root.numbers[0].value == pytest.approx(wanted, rel=2e-5)
 
 
 @pytest.mark.parametrize(
@@ -65,8 +65,8 @@ def test_whole_finger_has_the_target_at_the_key(target, over, force, wanted):
     """The number is that of a run. Tolerance of the root: the search's."""
     (root,) = fp.solve(fp.Scene(force=force) if force else None, over, **target).roots
     totals = fp.run(root.scene, model="cylinders").finger.values("full_slip")
-    assert totals[next(iter(target))] == root.number.value
-    assert root.number.value == pytest.approx(wanted, rel=2e-5)
+    assert totals[next(iter(target))] == root.numbers[0].value
+    assert root.numbers[0].value == pytest.approx(wanted, rel=2e-5)
 
 
 def test_friction_is_of_the_whole_finger():
@@ -109,13 +109,13 @@ def test_margin_is_the_error_of_the_model_over_the_slope(name, value, over, rela
         return fp.solve(over=over, relative=relative, **{name: value * factor}).roots[0]
 
     found = root(1.0)
-    error = found.number.error / found.number.value
-    assert (root(1 + error).key - root(1 - error).key) / 2 == pytest.approx(found.margin, rel=1e-2)
+    error = found.numbers[0].error / found.numbers[0].value
+    assert (root(1 + error).keys[0] - root(1 - error).keys[0]) / 2 == pytest.approx(found.margins[0], rel=1e-2)
 
 
 def test_margin_is_not_known_elsewhere():
     (other,) = fp.solve(over="electric.d_i", mu_app=1.1, relative=True).roots
-    assert math.isnan(other.margin), "no full run has such a thick coating"
+    assert math.isnan(other.margins[0]), "no full run has such a thick coating"
 
 
 # -- the command -----------------------------------------------------------------------------------------------------
