@@ -134,10 +134,11 @@ def solve(
     scene, way = checked(scene).resolved(), find(model)
     keys, given = _listed(over), [(name, each) for name, values in target.items() for each in _listed(values)]
     if not given or len(given) != len(keys):
-        words = f"{len(given)} targets are given over {show(keys)}" if given else "no target is given"
-        raise SceneError(f"{words}; give a quantity and its value for each key, such as mu_app=0.4")
+        many = f"{len(given)} targets are given over {' and '.join(map(str, keys))}; give as many as keys"
+        none = "no target is given; give a quantity and its value, such as mu_app=0.4"
+        raise SceneError(many if given else none)
     if twice := [key for key in keys if keys.count(key) > 1 or key in (at or {})]:
-        raise SceneError(f"{show(twice[0])} is varied, and is given once more; it must be there once")
+        raise SceneError(f"{twice[0]} is varied, and is given once more; it must be there once")
     way.check(scene)
     if "voltage" in keys and scene.drive is not None:
         raise SceneError("voltage is a drive and over is voltage; give one of its keys, as voltage.rms")
