@@ -1,6 +1,6 @@
 """Full states that Newton's method takes to targets of the default finger, from the closed form on.
 
-environment/run python3 -m benchmarks.design     prints them; some 10 minutes
+environment/run python3 -m benchmarks.design     prints them; some 8 minutes
 """
 
 import fingerpad as fp
@@ -8,8 +8,8 @@ import fingerpad as fp
 TARGETS = (
     ("voltage", {"mu_app": 0.4}), ("electric.d_i", {"mu_app": 0.4}), ("friction", {"f_t": "30 N/m"}),
     ("f_ext", {"mu_app": 0.6}), ("roughness.h_rms", {"f_electrostatic": "60 N/m"}),
-    ("electric.eps_i", {"contact_length": "1.25 mm"}),
-    ("materials.stratum_corneum.shear_modulus", {"contact_length": "1.25 mm"}),
+    ("electric.eps_i", {"contact_length": "1.65 mm"}),
+    ("materials.stratum_corneum.shear_modulus", {"contact_length": "1.65 mm"}),
     (("friction", "electric.d_i"), {"f_t": ("20 N/m", "35 N/m"), "at": {"voltage": (0, 200)}}),
 )  # fmt: skip
 

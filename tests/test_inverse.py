@@ -212,7 +212,7 @@ def test_command_finds_two_keys_for_two_voltages(capsys):
     assert str(found) in capsys.readouterr().out
     for voltage, f_t in zip(at["voltage"], (0.1, 0.2), strict=True):
         totals = fp.run(found.roots[0].scene, voltage=voltage, model="cylinders").finger.values("full_slip")
-        assert totals["f_t"] == pytest.approx(f_t, rel=1e-5)
+        assert totals["f_t"] == pytest.approx(f_t, rel=1e-4)
 
 
 LEAN = NINE | {"f_ext": 1.0, "voltage": 100.0, "output": {"errors": False, "receptors": False}}

@@ -38,7 +38,6 @@ from fingerpad.scene.remarks import drive_in_short, other_under_a_drive
 from fingerpad.slices import errors
 
 _STATE = "full_slip"
-_MET, _STEP = 1e-6, 1e-3  # relative distance of the closed form from several targets; a step for its slopes
 
 
 @dataclass(frozen=True)
@@ -228,26 +227,28 @@ class _Problem:
         Raises:
             SceneError: the targets are not reached, with what is.
         """
-        full, missed = self.model.path, list[str]()
+        full, missed, keys = self.model.path, list[str](), [axis.key for axis in self.axes]
         closed = replace(self, model=Cylinders(), starts=True, results={}) if full else self
+        unknown = np.full([len(keys)] * 2, math.nan)
         try:
-            places, more = closed.places()
-            found = [(place, closed.state(place, by_steps=True)[1]) for place in places]
-        except _NoStart:
-            if not full:
+            places, more = closed.places() if len(keys) == 1 else ([self._own()], [])
+            found = [newton(closed.state, place, unknown, keys) for place in places]
+        except SceneError as error:
+            if not full or (len(keys) == 1 and not isinstance(error, _NoStart)):
                 raise
-            found, more = [(self._own(), np.full([len(self.axes)] * 2, math.nan))], []
-        for k, start in enumerate(found if full else []):
-            place, slopes, why = newton(self.state, *start, [axis.key for axis in self.axes])
-            found[k], more = (place, slopes), []
-            missed += [f"Targets are not met to {TOLERANCE:g}: {self._reached_at(place)}; {why}."] if why else []
+            found, more = [(self._own(), unknown, "")], []
+        for place, _, why in found if not full else []:
+            if why:  # of several keys
+                raise SceneError(f"the targets are not reached together: {self.reached(place)}; {why}")
+        if full:
+            found, more = [newton(self.state, *each[:2], keys) for each in found], []
+            missed = [f"Targets are not met to {TOLERANCE:g}: {self.reached(x)}; {why}." for x, _, why in found if why]
         for text in missed if launcher.rank() == 0 else []:
             warnings.warn(text, stacklevel=3)
-        roots = tuple(self._root(*each) for each in found)
-        whole = self.targets[0].whole
+        roots = tuple(self._root(place, slopes) for place, slopes, _ in found)
         for root in roots:  # the parts of its errors; where they are not known there is a caution
             notes += [plus_minus_of(each.parts) for each in root.numbers if each.error == each.error]
-            notes += errors.remarks([root.scene.force or 0.0]) if whole else []
+            notes += errors.remarks([root.scene.force or 0.0]) if self.targets[0].whole else []
             more += [f"! {caution}" for result in root.results for caution in result.cautions]
         every = tuple(dict.fromkeys([*(f"! {each}" for each in missed), *notes, *more]))
         states = tuple(self.results.values()) if full else ()
@@ -290,23 +291,15 @@ class _Problem:
         ratio = found[0] / base[0]
         return np.array([ratio, *(found[1:] - ratio * base[1:]) / base[0]])
 
-    def state(self, place: Array, by_steps: bool = False) -> tuple[Array, Array]:
-        """Return relative distances from the targets, and their derivatives: of the state, or by steps to others."""
+    def state(self, place: Array) -> tuple[Array, Array]:
+        """Return relative distances from the targets, and their derivatives by the places."""
         found = np.array([self._compared(target, place) for target in self.targets])
         wanted = np.array([target.value for target in self.targets])
         scale = np.where(wanted == 0, 1.0, np.abs(wanted))
-        off = (found[:, 0] - wanted) / scale
-        if not by_steps:
-            by_key = [axis.slope(x) for axis, x in zip(self.axes, place, strict=True)]
-            return off, found[:, 1:] * by_key / scale[:, None]
-        slopes = np.full([len(place)] * 2, math.nan)
-        for k, x in enumerate(place):
-            step = _STEP if x + _STEP <= 1 else -_STEP
-            with suppress(SceneError):
-                slopes[:, k] = (self.state(place + step * np.eye(len(place))[k])[0] - off) / step
-        return off, slopes
+        by_place = [axis.slope(x) for axis, x in zip(self.axes, place, strict=True)]
+        return (found[:, 0] - wanted) / scale, found[:, 1:] * by_place / scale[:, None]
 
-    def _reached_at(self, place: Array) -> str:
+    def reached(self, place: Array) -> str:
         """Return in words what is reached at a place."""
         at = " and ".join(f"{axis.key} {axis.shown(axis.value(x))}" for axis, x in zip(self.axes, place, strict=True))
         found = (f"{target.words} is {target.shown(self._compared(target, place)[0])}" for target in self.targets)
@@ -325,39 +318,20 @@ class _Problem:
         numbers = tuple(_number(*pair) for pair in zip(results, self.targets, strict=True))
         relative = [number.error / (number.value or math.nan) for number in numbers]
         inverse = np.linalg.inv(slopes) if np.linalg.det(slopes) else np.full_like(slopes, math.nan)
-        moved = np.abs(inverse) @ relative  # the places
-        margins = [axis.slope(x) * dx for axis, x, dx in zip(self.axes, place, moved, strict=True)]
-        ranges = [axis.high - axis.low for axis in self.axes]  # margins are beyond where a slope vanishes
-        known = tuple(m if m < r else math.nan for m, r in zip(map(float, margins), ranges, strict=True))
-        return Root(
-            tuple(axis.value(x) for axis, x in zip(self.axes, place, strict=True)),
-            numbers,
-            known,
-            self._at(place),
-            results,
-        )
+        pairs = [*zip(self.axes, place, np.abs(inverse) @ relative, strict=True)]
+        margins = ((float(axis.slope(x) * error), axis.high - axis.low) for axis, x, error in pairs)
+        known = tuple(margin if margin < width else math.nan for margin, width in margins)  # where a slope vanishes
+        return Root(tuple(axis.value(x) for axis, x, _ in pairs), numbers, known, self._at(place), results)
 
     # -- by the closed form --------------------------------------------------------------------------------
     def places(self) -> tuple[list[Array], list[str]]:
-        """Return the places at which the closed form has the targets, and notes.
+        """Return the places of one key at which the closed form has the target, and notes.
 
         Raises:
-            _NoStart: it has no answer, or a key has no effect.
-            SceneError: it does not reach the targets, with what it does.
+            _NoStart: it has no answer, or none that depends on the key.
+            SceneError: it does not reach the target, with what it does.
         """
-        if len(self.axes) == 1:
-            return self._over_range(self.axes[0], self.targets[0])
-        try:
-            unknown, keys = np.full([len(self.axes)] * 2, math.nan), [axis.key for axis in self.axes]
-            place, _, why = newton(lambda x: self.state(x, by_steps=True), self._own(), unknown, keys, _MET)
-        except SceneError as error:
-            raise _NoStart(str(error)) from error
-        if why:
-            raise SceneError(f"the targets are not reached together: {self._reached_at(place)}; {why}")
-        return [place], []
-
-    def _over_range(self, axis: Axis, target: Target) -> tuple[list[Array], list[str]]:
-        """Return :meth:`places` over one key."""
+        axis, target = self.axes[0], self.targets[0]
         name = target.quantity.name
         search = Roots(lambda x: float(self._compared(target, np.array([x]))[0]), 0.0, 1.0, target.value)
         try:

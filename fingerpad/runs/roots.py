@@ -14,6 +14,7 @@ before, with Broyden's update, :math:`J_i \leftarrow J_i + (\Delta r_i - J_i \De
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any, Self
 
@@ -49,7 +50,7 @@ _JUMP = 1e-3  # relative difference from the target at a sign change that is a j
 _BISECTIONS = 8  # between a place with a value and one without
 TOLERANCE = 1e-4
 """Relative distance from a target at which Newton's method ends."""
-_MOST, _PROBE = 10, 0.01  # steps of Newton's method, and a step for slopes that are not known
+_MOST, _PROBE = 10, 1e-3  # steps of Newton's method, and a step for slopes that are not known
 _ALIKE = 1e8  # condition number of slopes, from which on keys act alike
 
 
@@ -70,21 +71,19 @@ class Axis:
 
     def place(self, value: float) -> float:
         """Return the place of a value of the key in its range, 0 to 1: at equal ratios, or at equal distances."""
-        if self.logarithmic:
-            return math.log(value / self.low) / math.log(self.high / self.low)
-        return (value - self.low) / (self.high - self.low)
+        a, b, x = map(math.log, (self.low, self.high, value)) if self.logarithmic else (self.low, self.high, value)
+        return (x - a) / (b - a)
 
     def value(self, place: float) -> float:
         """Return the value of the key at a place, within the range."""
-        ratio, width = self.high / (self.low or 1.0), self.high - self.low
-        found = self.low * ratio**place if self.logarithmic else self.low + place * width
-        return min(max(found, self.low), self.high)
+        ratio = self.high / self.low if self.logarithmic else 1.0
+        found = self.low * ratio**place if self.logarithmic else self.low + place * (self.high - self.low)
+        return float(min(max(found, self.low), self.high))
 
     def slope(self, place: float) -> float:
         """Return the derivative of the key by its place."""
-        if self.logarithmic:
-            return self.value(place) * math.log(self.high / self.low)
-        return self.high - self.low
+        width = self.high - self.low
+        return self.value(place) * math.log(self.high / self.low) if self.logarithmic else width
 
     def spread(self, count: int) -> list[float]:
         """Return values of the key from end to end of the range, those between rounded to 6 digits."""
@@ -285,13 +284,9 @@ class Roots:
 
 
 def newton(
-    state: Callable[[Array], tuple[Array, Array]],
-    place: Array,
-    slopes: Array,
-    keys: Sequence[str],
-    tolerance: float = TOLERANCE,
+    state: Callable[[Array], tuple[Array, Array]], place: Array, slopes: Array, keys: Sequence[str]
 ) -> tuple[Array, Array, str]:
-    """Return the places of keys at which residuals vanish within a tolerance, or the nearest that was found.
+    """Return the places of keys at which residuals vanish within :data:`TOLERANCE`, or the nearest that was found.
 
     A step ends at the ends of the ranges. One to larger residuals, or to no state, is shortened.
 
@@ -301,7 +296,6 @@ def newton(
         place: where to start.
         slopes: derivatives there, for those that are not known of a state; NaN for the difference of two states.
         keys: their names.
-        tolerance: largest residual.
 
     Returns:
         Places, derivatives there, and why residuals are larger; empty where they are not.
@@ -313,15 +307,15 @@ def newton(
     slopes = np.where(np.isnan(exact), slopes, exact)
     for k in np.flatnonzero(np.isnan(slopes).any(axis=0)):
         step = np.eye(len(place))[k] * (_PROBE if place[k] < 0.5 else -_PROBE)
-        by_probe = (state(place + step)[0] - off) / step[k]
-        slopes[:, k] = np.where(np.isnan(slopes[:, k]), by_probe, slopes[:, k])
+        with suppress(SceneError):
+            slopes[:, k] = np.where(np.isnan(slopes[:, k]), (state(place + step)[0] - off) / step[k], slopes[:, k])
     part, why = 1.0, ""
     for count in range(_MOST + 1):
-        if np.abs(off).max() <= tolerance:
+        if np.abs(off).max() <= TOLERANCE:
             return place, slopes, ""
         if none := [key for key, by_key in zip(keys, slopes.T, strict=True) if not by_key.any()]:
             raise SceneError(f"{none[0]} has no effect here: its slope is 0; vary another key")
-        if np.linalg.cond(slopes) > _ALIKE:
+        if not np.linalg.cond(slopes) < _ALIKE:
             raise SceneError(f"{' and '.join(keys)} act alike here: their slopes are proportional; vary another key")
         wanted = place - part * np.linalg.solve(slopes, off)
         if beyond := [key for key, x, y in zip(keys, place, wanted, strict=True) if x <= 0 > y or x >= 1 < y]:
@@ -335,10 +329,9 @@ def newton(
             part, why = part / 2, str(error)
             continue
         slopes = slopes + np.outer(other - off - slopes @ step, step) / (step @ step)
-        before, after = np.linalg.norm(off), np.linalg.norm(other)
-        if after < before:
+        if (ratio := float(np.linalg.norm(other) / np.linalg.norm(off))) < 1:
             place, off, exact, part, why = place + step, other, known, 1.0, ""
         else:
-            part, why = part * float(before / (before + after)), "states beside it are further away"
+            part, why = part / (1 + ratio), "states beside it are further away"
         slopes = np.where(np.isnan(exact), slopes, exact)
     return place, slopes, why or f"{_MOST} steps were not enough"
