@@ -3,8 +3,8 @@
 #
 # A screen of 100 V is to raise friction by 10 % under a finger that presses with 1 N. How thick is its coating, and how
 # exactly must it be made? The closed form computes the thickness at once. The full model goes on from there by Newton's
-# method, with the slopes of its runs. The same slopes give the tolerance: the change $\Delta\mu / \mu_0$ of friction stays
-# within $\pm \varepsilon$ of 10 % for
+# method, with the slopes of its runs. The same slopes give the tolerance: the change $\Delta\mu / \mu_0$ of friction
+# stays within $\pm \varepsilon$ of 10 % for
 #
 # $$|\Delta d| \le \varepsilon\, \mu_0 \,/\, |\partial \mu_{app} / \partial d|.$$
 
@@ -32,7 +32,9 @@ def main(out: str = "results/demos/design_a_coating", size: str = "small") -> No
     slopes = full.results[0].sensitivities("mu_app")
     tolerance = WITHIN * MU_0 / abs(float(slopes.slope.sel(number="electric.d_i")))
     print(f"Closed form, whole finger, 1 N: {1e6 * closed.keys[0]:.1f} µm.")
-    print(f"Full model, middle section of the {size} finger, {len(solution.states)} states: {1e6 * full.keys[0]:.1f} µm.")
+    print(
+        f"Full model, middle section of the {size} finger, {len(solution.states)} states: {1e6 * full.keys[0]:.1f} µm."
+    )
     print(f"Friction changes by {100 * CHANGE:g} ± {100 * WITHIN:g} % within ± {1e6 * tolerance:.1f} µm.")
 
     figure = Figure(figsize=(6.4, 3.2), layout="constrained")
@@ -45,8 +47,8 @@ def main(out: str = "results/demos/design_a_coating", size: str = "small") -> No
     figure.savefig(Path(out) / "coating.png", dpi=150)
 
     # %% [markdown]
-    # Assertions: the target is met, and a coating that is thinner by the tolerance changes friction by 11 %, but for the
-    # curvature between.
+    # Assertions: the target is met, and a coating that is thinner by the tolerance changes friction by 11 %, but for
+    # the curvature between.
 
     # %%
     assert abs(full.numbers[0].value / MU_0 - 1 - CHANGE) < 2e-4

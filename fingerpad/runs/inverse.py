@@ -2,13 +2,13 @@
 
 The closed form is the model "cylinders" (:mod:`fingerpad.reduced.cylinders`). One key is varied over its range, and
 each crossing of the target is refined; several keys have one solution (:mod:`fingerpad.runs.roots`). From there the
-full model goes on by Newton's method, with the slopes of whole runs (:mod:`fingerpad.results.slopes`) where there are
-any, and those of the closed form and differences of runs elsewhere. A finger whose press has not been made, and a key
-that the closed form does not have, start at the scene's own value.
+full model goes on by Newton's method with the slopes of whole runs (:mod:`fingerpad.results.slopes`); without these,
+with those of the closed form and with differences. Without an answer of the closed form it starts at the scene's own
+values.
 
-Quantities are those of the whole finger, as in the headline of a result. They are of the middle section where ``f_ext``
-is varied, a target is of the section alone or has a unit per metre, and by the full model without a force. By the
-closed form a scene without a force gets the one whose centre bears its ``f_ext``.
+Quantities are those of the whole finger, as in the headline of a result; those of the middle section where ``f_ext`` is
+varied, the target has a unit per metre, or the full model has no force. The closed form takes the force whose centre
+bears ``f_ext`` where none is given.
 """
 
 import math
@@ -53,7 +53,7 @@ class Root:
     scene: Scene
     """With the keys."""
     results: tuple[Result, ...]
-    """Of each target: the section and, where the scene has a force, the whole finger."""
+    """Of each target."""
 
 
 @dataclass(frozen=True)
@@ -88,9 +88,9 @@ class Solution:
             keys = zip(self.axes, root.keys, root.margins, strict=True)
             values = ", ".join(f"{axis.key} = {axis.shown(value, error=margin)}" for axis, value, margin in keys)
             known = f", ± by the error of the {'model' if self.states else 'closed form'}"
-            pairs = zip(self.targets, root.numbers, strict=True)
-            numbers = ", ".join(f"{target.quantity.symbol} {target.number(number)}" for target, number in pairs)
-            lines.append(f"  {values}{known * (root.margins[0] == root.margins[0])}: {numbers}")
+            pairs = [(target.quantity, number) for target, number in zip(self.targets, root.numbers, strict=True)]
+            shown = (f"{q.symbol} {q.shown(number.value, number.error)} {q.unit}".rstrip() for q, number in pairs)
+            lines.append(f"  {values}{known * (root.margins[0] == root.margins[0])}: {', '.join(shown)}")
         return "\n".join([*lines, *other_under_a_drive(each.scene for each in self.roots), *self.notes])
 
 
@@ -152,7 +152,7 @@ def solve(
             raise SceneError(f"{goal.quantity.symbol} is of the {kind} and {why}; give {other} in its place")
         if goal.whole != goals[0].whole:
             raise SceneError(f"{goal.quantity.symbol} is of the {kind} and {goals[0].words} is not; give both of one")
-    pairs = [between] if len(keys) == 1 else _listed(between or [None] * len(keys))
+    pairs = [between] if len(keys) == 1 else _listed(between) if between else [None] * len(keys)
     if len(pairs) != len(keys):
         raise SceneError(f"between is {show(between)}; it must be a first and a last value for each of {show(keys)}")
     axes, notes = [Axis.of(scene, *pair) for pair in zip(keys, pairs, strict=True)], list[str]()
@@ -175,19 +175,17 @@ def _listed(given: Any) -> list[Any]:
 
 def _state_of(at: Mapping[str, Any], count: int, k: int) -> dict[str, Any]:
     """Return the values of other keys of a target, the number k of a count; refuse another count of values."""
-    for key, values in at.items():
-        if len(_listed(values)) != count:
-            raise SceneError(f"at {key} is {show(values)}; it must have one value for each target, {count} in all")
+    if wrong := [key for key, values in at.items() if len(_listed(values)) != count]:
+        key = wrong[0]
+        raise SceneError(f"at {key} is {show(at[key])}; it must have one value for each target, {count} in all")
     return {key: _listed(values)[k] for key, values in at.items()}
 
 
 def _solved(scene: Scene, model: Model) -> Result:
     """Return the result of a scene, of the closed form without its bands over assumptions."""
     result = solved(scene, model, RunContext(report=False))
-    if result.interrupted:
-        raise stopped(result)
     if result.failure:
-        raise SceneError(result.failure)
+        raise stopped(result) if result.interrupted else SceneError(result.failure)
     return result
 
 
@@ -227,7 +225,7 @@ class _Problem:
         Raises:
             SceneError: the targets are not reached, with what is.
         """
-        full, missed, keys = self.model.path, list[str](), [axis.key for axis in self.axes]
+        full, keys = self.model.path, [axis.key for axis in self.axes]
         closed = replace(self, model=Cylinders(), starts=True, results={}) if full else self
         unknown = np.full([len(keys)] * 2, math.nan)
         try:
@@ -237,21 +235,20 @@ class _Problem:
             if not full or (len(keys) == 1 and not isinstance(error, _NoStart)):
                 raise
             found, more = [(self._own(), unknown, "")], []
-        for place, _, why in found if not full else []:
-            if why:  # of several keys
-                raise SceneError(f"the targets are not reached together: {self.reached(place)}; {why}")
         if full:
             found, more = [newton(self.state, *each[:2], keys) for each in found], []
-            missed = [f"Targets are not met to {TOLERANCE:g}: {self.reached(x)}; {why}." for x, _, why in found if why]
+        missed = [f"Targets are not met to {TOLERANCE:g}: {self.reached(x)}; {why}." for x, _, why in found if why]
+        if missed and not full:  # of several keys
+            raise SceneError(f"{missed[0][0].lower()}{missed[0][1:-1]}")
         for text in missed if launcher.rank() == 0 else []:
             warnings.warn(text, stacklevel=3)
         roots = tuple(self._root(place, slopes) for place, slopes, _ in found)
+        notes = [*(f"! {each}" for each in missed), *notes]
         for root in roots:  # the parts of its errors; where they are not known there is a caution
             notes += [plus_minus_of(each.parts) for each in root.numbers if each.error == each.error]
             notes += errors.remarks([root.scene.force or 0.0]) if self.targets[0].whole else []
             more += [f"! {caution}" for result in root.results for caution in result.cautions]
-        every = tuple(dict.fromkeys([*(f"! {each}" for each in missed), *notes, *more]))
-        states = tuple(self.results.values()) if full else ()
+        states, every = tuple(self.results.values() if full else ()), tuple(dict.fromkeys([*notes, *more]))
         return Solution(tuple(self.targets), tuple(self.axes), self.scene, roots, every, states)
 
     # -- what is reached -----------------------------------------------------------------------------------

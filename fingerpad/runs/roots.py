@@ -22,7 +22,6 @@ import numpy as np
 import scipy  # its parts are imported where they are used first
 from numpy.typing import NDArray
 
-from fingerpad.results.data import Number
 from fingerpad.results.quantities import FINGER, QUANTITIES, Output, in_table, plus_minus
 from fingerpad.scene import Scene, value_of, with_values
 from fingerpad.scene.keys import by_name
@@ -199,14 +198,9 @@ class Target:
 
     def shown(self, *values: float) -> str:
         """Return one or two values of the kind of :attr:`value` in the unit of tables."""
-        scale, unit = (
-            (1.0, "times its value without voltage") if self.relative else (self.quantity.scale, self.quantity.unit)
-        )
+        unit = "times its value without voltage" if self.relative else self.quantity.unit
+        scale = 1.0 if self.relative else self.quantity.scale
         return f"{' to '.join(f'{value * scale:.4g}' for value in values)} {unit}".rstrip()
-
-    def number(self, number: Number) -> str:
-        """Return the quantity with its error and unit."""
-        return f"{self.quantity.shown(number.value, number.error)} {self.quantity.unit}".rstrip()
 
 
 @dataclass
