@@ -20,7 +20,7 @@ from fingerpad.results.slopes import rows
 from fingerpad.scene import SceneError, from_data
 from tests.runs import no_pictures
 from tests.small_finger import NINE
-from variational import sensitivity
+from variational import numbers, sensitivity
 from variational.solvers.coupling import AcceptedState
 
 pytestmark = pytest.mark.slow
@@ -32,7 +32,8 @@ LAYER = "materials.stratum_corneum"
 KEYS = (
     "f_ext", "voltage", "friction.mu_f", "friction.tau_0", "roughness.young", "roughness.h_rms", "roughness.wavelength",
     "electric.d_i", "electric.eps_i", f"{LAYER}.shear_modulus", f"{LAYER}.alpha", f"{LAYER}.poisson",
-    "materials.dermis.shear_modulus", "contact.eps_n",
+    "materials.dermis.shear_modulus", "contact.eps_n", "geometry.sc_thickness", "geometry.ridge_amplitude",
+    "geometry.ridge_wavelength", "geometry.intermediate_ridge_height",
 )  # fmt: skip
 BEHIND = 3e-3  # m, of anchors, so that no point can stick
 OF = ("mu_app", "contact_length", "p_max", "bone_height")
@@ -55,20 +56,21 @@ class Solved:
 
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr("fingerpad.model.slopes.Linearised", Spied)
-            self.found = state_slopes(model, self.finger, self.state.load_number)
+            self.found = state_slopes(model, self.finger, self.state.load_number, fixed_points=True)
         self.varied, self.measure, self.fixed = kept["varied"], kept["measure"], kept["fixed"]
 
     def at(self, key, part):
         """Return the quantities where a number is changed by a part of itself."""
         coupling, solver, history = self.finger.coupling, self.finger.solver, self.finger.problem.history
         place = AcceptedState.of(coupling)
-        sensitivity.impose(coupling, self.varied[key](part))
+        numbers.impose(coupling, self.varied[key](part))
         history.accept({"anchor": history.accepted["anchor"] + np.sign(solver.reaction[0]) * BEHIND})
         voltage = float(self.finger.problem.voltage.value)
         solver.new_load(replace(solver.control), voltage, slipping=True, on_cone=False)
         coupling.solve()
-        found = self.measure(self.finger.observer.state(), solver.bone)
-        sensitivity.impose(coupling, self.varied[key](0.0))
+        skin = self.finger.observer.state()
+        found = self.measure(skin, self.finger.observer.ridge_loads(skin), solver.bone)
+        numbers.impose(coupling, self.varied[key](0.0))
         place.restore(coupling)
         return found
 
@@ -147,7 +149,7 @@ def test_residual_is_derived_as_by_ufl():
     f = solver.layout.create_vector()
 
     def residual(part):
-        sensitivity.impose(mine.finger.coupling, mine.varied["voltage"](part))
+        numbers.impose(mine.finger.coupling, mine.varied["voltage"](part))
         solver.equations.residual(solver.x, f)
         return f.array_r.copy()
 
