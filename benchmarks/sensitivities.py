@@ -50,7 +50,7 @@ def whole(scene: Mapping[str, Any]) -> dict[str, Any]:
         slopes = of_state(model, finger, number)
         if not slopes.why:
             found["seconds"], found["unknowns"] = time.process_time() - begin, finger.unknowns
-            found.update(_compared(model, finger, number, slopes, of_state(model, finger, number, fixed_points=True)))
+            found.update(_compared(model, finger, number, slopes))
             found["compared"] = time.process_time() - begin - found["seconds"]
         return slopes
 
@@ -64,7 +64,7 @@ def whole(scene: Mapping[str, Any]) -> dict[str, Any]:
     return found | {"run": rest, "rows": rows.to_dict("records"), "mu_app": result.number("full_slip", "mu_app").value}
 
 
-def _compared(model: Any, finger: Any, number: int, slopes: Any, stair: Any) -> dict[str, Any]:
+def _compared(model: Any, finger: Any, number: int, slopes: Any) -> dict[str, Any]:
     """Return what whole solves give, from the present state of a finger, which stays."""
     from fingerpad.model.slopes import follower, numbers_of, quantities_of
     from variational.numbers import impose
@@ -88,20 +88,24 @@ def _compared(model: Any, finger: Any, number: int, slopes: Any, stair: Any) -> 
             place.restore(finger.coupling)
 
     def slope(of: Any, key: str) -> np.ndarray:
-        return np.array([of.slopes[name][key] * slopes.values[key] for name in OF])
+        return np.array([of[name][key] * slopes.values[key] for name in OF])
 
     apart, wide = {}, {}
-    keys = [key for key in KEYS if key in slopes.values and np.all(np.abs(slope(slopes, key)) > LEAST)]
+    keys = [key for key in KEYS if key in slopes.values and np.all(np.abs(slope(slopes.slopes, key)) > LEAST)]
     for key in keys:
         (more, came), (less, went) = at(key, PART), at(key, -PART)
-        relative = np.subtract(more, less) / (2 * PART) / slope(stair, key) - 1
+        relative = np.subtract(more, less) / (2 * PART) / slope(slopes.stairs, key) - 1
         apart[key] = {"points": came + went, **dict(zip(OF, relative.tolist(), strict=True))}
         print(key, apart[key], file=sys.stderr, flush=True)
     for key in (key for key in WIDE if key in keys):
         parts = WIDE[key] * np.arange(-4, 5)
         values = np.array([at(key, part)[0] for part in parts])
         chord = np.polyfit(parts, values, 3)[2]
-        wide[key] = {"chord": chord.tolist(), "slope": slope(slopes, key).tolist(), "stair": slope(stair, key).tolist()}
+        wide[key] = {
+            "chord": chord.tolist(),
+            "slope": slope(slopes.slopes, key).tolist(),
+            "stair": slope(slopes.stairs, key).tolist(),
+        }
         print(key, wide[key], file=sys.stderr, flush=True)
     return {"apart": apart, "wide": wide}
 

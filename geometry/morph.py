@@ -6,6 +6,8 @@ the way that places are moved falls to nothing before the bone, and beyond the l
 and nail stay.
 """
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -66,7 +68,7 @@ class Morph:
         return np.asarray(self.places + self._part[:, None] * moved)
 
 
-def _fall(t: Array) -> Array:
+def _fall(t: NDArray[np.floating[Any]]) -> Array:
     """Return one below 0 and zero above 1, smooth between."""
     t = np.clip(t, 0.0, 1.0)
     return np.asarray(1 - t**3 * (10 - 15 * t + 6 * t**2))

@@ -56,7 +56,7 @@ class Solved:
 
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr("fingerpad.model.slopes.Linearised", Spied)
-            self.found = state_slopes(model, self.finger, self.state.load_number, fixed_points=True)
+            self.found = state_slopes(model, self.finger, self.state.load_number)
         self.varied, self.measure, self.fixed = kept["varied"], kept["measure"], kept["fixed"]
 
     def at(self, key, part):
@@ -75,8 +75,8 @@ class Solved:
         return found
 
     def slope(self, quantity, key):
-        """Return a slope for one whole of the number's amount."""
-        return self.found.slopes[quantity][key] * abs(self.found.values[key])
+        """Return a slope at fixed points in contact, for one whole of the number's amount."""
+        return self.found.stairs[quantity][key] * abs(self.found.values[key])
 
 
 @cache
@@ -206,8 +206,8 @@ def test_command_prints_them(ran, tmp_path):
     with redirect_stdout(io.StringIO()) as out:
         assert sensitivities.main([str(ran[0]), "--csv", str(tmp_path / "slopes.csv")]) == 0
     lines = [line.split() for line in out.getvalue().splitlines()]
-    assert lines[3][0] == rows(ran[1])[0].key
-    assert ["contact.eps_t", "5e+10", "Pa/m", "0", "0"] in [line[:5] for line in lines]
+    assert lines[4][0] == rows(ran[1])[0].key
+    assert ["contact.eps_t", "5e+10", "Pa/m", "0", "0", "0"] in [line[:6] for line in lines]
     assert "adhesion.p_0 is left out: adhesion is" in out.getvalue()
     assert len((tmp_path / "slopes.csv").read_text().splitlines()) == 1 + len(rows(ran[1]))
 

@@ -10,6 +10,8 @@ the least squares, and another one through their derivatives at fixed places. An
 .. math:: q(x_e) = 0, \qquad \dot x_e = -\dot q(x_e) / q'(x_e)
 """
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -17,7 +19,7 @@ from variational.contact.formulation import SurfaceState
 from variational.surface import Surface
 
 Array = NDArray[np.float64]
-_FACETS = 3  # beside each end; the last one in contact is left out
+_FACETS = 5  # beside each end; the last one in contact is left out
 _POWERS = np.arange(4)
 _ITERATIONS = 6  # of Newton's method, from the last facets' middles to the roots
 
@@ -34,7 +36,7 @@ class Ends:
         self._surface, ridges = surface, len(surface.ridge_numbers)
         self._p_n, place = state.p_n, surface.ends()[:, :, 0].mean(axis=1)
         means = self._means(state.x, state.p_n**2)
-        place, ridge, closed, x, squares = self._together(place, surface.ridge, (state.p_n > 0).any(axis=1), *means)
+        place, ridge, closed, x, squares = self._together(place, surface.ridge, np.any(state.p_n > 0, axis=1), *means)
         order = np.lexsort((place, ridge))
         ridge, closed = ridge[order], closed[order]
         inside = np.concatenate([[False], closed[1:] & closed[:-1] & (ridge[1:] == ridge[:-1]), [False]])
@@ -59,7 +61,7 @@ class Ends:
     def _means(self, *values: Array) -> list[Array]:
         return [each @ self._surface.weights for each in values]
 
-    def _together(self, *mine: NDArray) -> list[NDArray]:
+    def _together(self, *mine: Any) -> list[Any]:
         found = self._surface.mesh.comm.allgather(mine)
         return [np.concatenate(each) for each in zip(*found, strict=True)]
 
@@ -77,7 +79,7 @@ class Ends:
         x, squares = (each[self._facets] for each in means)
         q = self._cubic(squares - self._slope * x)
         moves = -_values(q, self._roots) / self._steep
-        return np.bincount(self._ridge, weights=np.diff(moves, axis=1)[:, 0], minlength=self._ridges)
+        return np.asarray(np.bincount(self._ridge, np.diff(moves, axis=1)[:, 0], self._ridges), dtype=float)
 
 
 def _values(cubics: Array, t: Array, order: int = 0) -> Array:

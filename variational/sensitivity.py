@@ -28,7 +28,7 @@ Where a number moves the nodes of the mesh, a state has the nodes' places after 
 in contact stays where it is as the number changes alone.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
@@ -63,6 +63,8 @@ class Slopes:
 
     by_step: dict[str, float]
     """Of each quantity, for one scale of the number."""
+    stair: dict[str, float]
+    """The same at fixed points in contact: the exact derivative until the next point comes or goes."""
     down: float
     up: float
     """How far the number can fall and rise, in its scale, until a ridge comes or goes, by straight extrapolation."""
@@ -106,26 +108,25 @@ class _Fixed:
     gaps: Array
     """Of the closure's air gaps, at fixed values at the Gauss points."""
     explicit: Array
-    """Of the quantities; empty where none depends on a number but by the skin."""
+    """Of the quantities; a zero where none depends on a number but by the skin."""
 
 
 class Linearised:
     """The derivative of a coupled state of equilibrium, by its numbers; of one use."""
 
-    def __init__(self, coupling: Coupling, measure: Measure, fixed_points: bool = False) -> None:
+    def __init__(self, coupling: Coupling, measure: Measure) -> None:
         """Compile derivatives, and factorise the tangent of the present state; collective.
 
         Args:
             coupling: in a state of equilibrium.
             measure: the quantities.
-            fixed_points: whether lengths change as at fixed points in contact: the exact derivative of a stair.
 
         Raises:
             ValueError: see :func:`refuse`.
             NotConverged: the factorisation failed.
         """
         refuse(coupling)
-        self.coupling, self.measure, self._fixed_points = coupling, measure, fixed_points
+        self.coupling, self.measure = coupling, measure
         self.solver, self.problem, self.observer = coupling.solver, coupling.solver.problem, coupling.observer
         problem = self.problem
         self._place, self._guess = AcceptedState.of(coupling), float(problem.guess.value)
@@ -196,7 +197,7 @@ class Linearised:
         up, down = varied(STEP), varied(-STEP)
         moves = not np.array_equal(up.places, down.places)
         part = None if moves or up.solids != down.solids else self._on_skin
-        explicit = moves or self.problem.interface.adhesion
+        depends = moves or self.problem.interface.adhesion is not None
 
         def values(step: float) -> Array:
             impose(self.coupling, varied(step))
@@ -207,7 +208,8 @@ class Linearised:
             closure = self.coupling.closure if self._charged else None
             p = self._pressures(self._skin) if moves else p_c
             gaps = np.zeros_like(p_c) if closure is None else air_gaps(closure, p)
-            found = self.measure(self._skin, self.observer.ridge_loads(self._skin), solver.bone) if explicit else {}
+            loads = self.observer.ridge_loads(self._skin)
+            found = self.measure(self._skin, loads, solver.bone) if depends else {"": 0.0}
             return np.concatenate([f.array_r, _stack(self.observer.state()).ravel(), gaps, [*found.values()]])
 
         residual, skin, gaps, explicit = np.split(_quotient(values, STEP), np.cumsum(sizes))
@@ -215,20 +217,6 @@ class Linearised:
 
     def _pressures(self, state: SurfaceState) -> Array:
         return self.observer.ridge_loads(state, self.coupling.by_gap).p_c
-
-    def _pressures_along(self, change: Array, dd: Array) -> Array:
-        """Return the derivative of the ridges' mean contact pressures along a change of the skin and of air gaps."""
-        d_eq, by_gap = self.coupling.d_eq, self.coupling.by_gap
-
-        def values(skin: SurfaceState, loads: RidgeLoads, part: float) -> Array:
-            if not by_gap:
-                return loads.p_c
-            self.problem.set_air_gaps(d_eq + part * dd)  # the length below the air gap depends on it
-            return self._pressures(skin)
-
-        found = self._along_skin(values, change)
-        self.coupling.set_air_gaps(d_eq)
-        return found
 
     def _closure_slope(self, p_c: Array) -> Array:
         """Return the derivative of the closure's air gaps (m/Pa)."""
@@ -260,22 +248,45 @@ class Linearised:
             function.x.array[surface.pairs[:, 0]] = values[surface.ridge]
             function.x.scatter_forward()
 
-    def _along_skin(self, values: Callable[[SurfaceState, RidgeLoads, float], Array], change: Array) -> Array:
-        """Return the derivative of a function of the skin and its resultants along a change; collective."""
+    def _results(self, skin: SurfaceState, length: Array, bone: Array) -> Array:
+        """Return mean contact pressures (Pa), the quantities, and of each ridge how far it is from the next kink.
+
+        Args:
+            skin: values at the Gauss points.
+            length: of the ridges in contact (m).
+            bone: translation (m).
+        """
+        loads = replace(self.observer.ridge_loads(skin), length=length)
+        p_c = self._pressures(skin) if self.coupling.by_gap else loads.p_c
+        found = self.measure(skin, loads, bone)
+        self._names = [*found]
+        return np.concatenate([p_c, [*found.values()], self._margins(skin, loads)])
+
+    def _results_along(self, change: Array, dx: Array, dd: Array) -> Array:
+        """Return the derivatives of the results along a change of the skin, of unknowns and of air gaps; collective.
+
+        In two rows: with the ridges' lengths as their ends move, and as they do at fixed points in contact.
+        """
         skin, gap = _stack(self._skin), self._skin.gap
         moved = np.abs(change[_VALUES.index("gap")], where=gap < _NEAR, out=np.zeros_like(gap)).max(initial=0.0)
         most = max(self.problem.mesh.comm.allgather(float(moved)))
         step = min(_MOVE / most, _OF_MOVE) if most > 0 else _OF_MOVE
-        smooth = self._ends.located & (not self._fixed_points)
-        rates = self._ends.rates(SurfaceState(*change))
+        smooth, d_eq = self._ends.rates(SurfaceState(*change)), self.coupling.d_eq
+        vector = self.solver.layout.create_vector()
+        vector.array_w[:] = dx
+        bone = self.solver.layout.rigid_part(vector)
 
-        def at(part: float) -> Array:
+        def results(part: float) -> Array:
             there = SurfaceState(*(skin + part * change))
-            loads = self.observer.ridge_loads(there)
-            length = np.where(smooth, self._length + part * rates, loads.length)
-            return values(there, replace(loads, length=length), part)
+            stair = self.observer.ridge_loads(there).length
+            ends = np.where(self._ends.located, self._length + part * smooth, stair)
+            if self.coupling.by_gap:  # the length below the air gap depends on it
+                self.problem.set_air_gaps(d_eq + part * dd)
+            return np.stack([self._results(there, each, self.solver.bone + part * bone) for each in (ends, stair)])
 
-        return _quotient(at, step)
+        found = _quotient(results, step)
+        self.coupling.set_air_gaps(d_eq)
+        return found
 
     # -- all numbers -----------------------------------------------------------------------------------
     def slopes(self, varied: Mapping[str, Varied]) -> dict[str, Slopes]:
@@ -303,40 +314,28 @@ class Linearised:
         self._place.restore(self.coupling)
         solved = self._solve([*right, *(each.residual for each in fixed.values())])
         B, of_numbers = solved[: len(unit)], dict(zip(fixed, solved[len(unit) :], strict=True))
-        skins = [self._skin_along(*pair) for pair in zip(B, unit, strict=True)]
-        loop = np.eye(len(unit))
-        if len(unit):
-            closure_slope = self._closure_slope(self._pressures(self._skin))
-            moved = [self._pressures_along(*pair) for pair in zip(skins, unit, strict=True)]
-            loop = loop - closure_slope[:, None] * np.stack(moved, axis=1)
+        count, pairs = len(unit), zip(B, unit, strict=True)
+        by_gaps = [self._results_along(self._skin_along(b, each), b, each) for b, each in pairs]
+        closure_slope = self._closure_slope(self._pressures(self._skin)) if count else none
         found = {}
         for key, a in of_numbers.items():
-            skin = fixed[key].skin + self._skin_along(a, none)
-            if len(unit):
-                dd = np.linalg.solve(loop, closure_slope * self._pressures_along(skin, none) + fixed[key].gaps)
-                skin = skin + sum(d * each for d, each in zip(dd, skins, strict=True))
-                a = a + sum(d * b for d, b in zip(dd, B, strict=True))
-            found[key] = self._slopes(a, skin, fixed[key].explicit)
+            both = [*self._results_along(fixed[key].skin + self._skin_along(a, none), a, none)]
+            for k, each in enumerate(both) if count else ():
+                of_gaps = np.stack([pair[k] for pair in by_gaps])
+                loop = np.eye(count) - closure_slope[:, None] * of_gaps[:, :count].T
+                both[k] = each + np.linalg.solve(loop, closure_slope * each[:count] + fixed[key].gaps) @ of_gaps
+            found[key] = self._slopes([each[len(none) :] for each in both], fixed[key].explicit)
         return found
 
-    def _slopes(self, dx: Array, change: Array, explicit: Array) -> Slopes:
-        """Return the derivatives of the quantities along a change of the state."""
-        step = self.solver.layout.create_vector()
-        step.array_w[:] = dx
-        bone = self.solver.layout.rigid_part(step)
-        names = list[str]()
-
-        def values(skin: SurfaceState, loads: RidgeLoads, part: float) -> Array:
-            found = self.measure(skin, loads, self.solver.bone + part * bone)
-            names[:] = found
-            return np.array([*found.values(), *self._margins(skin, loads)])
-
-        found = self._along_skin(values, change)
-        by_step = dict(zip(names, map(float, found[: len(names)] + (explicit if len(explicit) else 0.0)), strict=True))
+    def _slopes(self, along: Sequence[Array], explicit: Array) -> Slopes:
+        """Return the derivatives of the quantities from those of quantities and margins, in both ways."""
+        count = len(self._names)
+        smooth, stair = (dict(zip(self._names, map(float, each[:count] + explicit), strict=True)) for each in along)
         with np.errstate(divide="ignore", invalid="ignore"):
-            ends = -self._margins(self._skin, self.observer.ridge_loads(self._skin)) / found[len(names) :]
+            ends = -self._margins(self._skin, self.observer.ridge_loads(self._skin)) / along[0][count:]
         ends = ends[np.isfinite(ends)]
-        return Slopes(by_step, float((-ends[ends < 0]).min(initial=np.inf)), float(ends[ends > 0].min(initial=np.inf)))
+        down, up = -ends[ends < 0], ends[ends > 0]
+        return Slopes(smooth, stair, float(down.min(initial=np.inf)), float(up.min(initial=np.inf)))
 
     def _margins(self, skin: SurfaceState, loads: RidgeLoads) -> Array:
         """Return of each ridge its contact force (N/m), or without one the gap of its lowest point (m); collective."""

@@ -42,6 +42,8 @@ class StateSlopes:
     """Of the scene, by dotted key; SI."""
     slopes: Mapping[str, Mapping[str, float]] | None = None
     """Derivative of each quantity by each number, by quantity and key; SI."""
+    stairs: Mapping[str, Mapping[str, float]] | None = None
+    """The same at fixed points in contact: exact until the next one comes or goes (:mod:`variational.sensitivity`)."""
     ends: Mapping[str, tuple[float, float]] | None = None
     """How far each number can fall and rise (SI) until a ridge comes or goes, by straight extrapolation."""
     left_out: Mapping[str, str] | None = None
@@ -134,14 +136,13 @@ def quantities_of(finger: Finger, skin: SurfaceState, loads: RidgeLoads, bone: A
     return found | ({"bone_height": float(bone[1])} if finger.solver.control.y is None else {"f_ext": f_ext})
 
 
-def state_slopes(model: FingerModel, finger: Finger, load_number: int, fixed_points: bool = False) -> StateSlopes:
+def state_slopes(model: FingerModel, finger: Finger, load_number: int) -> StateSlopes:
     """Return the slopes of the present state of a finger, which stays as it is; collective.
 
     Args:
         model: whose numbers are varied.
         finger: in a state of equilibrium.
         load_number: of the load that the state is of, from 1.
-        fixed_points: whether the slopes are those at fixed points in contact (:mod:`variational.sensitivity`).
     """
     coupling, control, places = finger.coupling, finger.solver.control, follower(finger)
 
@@ -154,7 +155,7 @@ def state_slopes(model: FingerModel, finger: Finger, load_number: int, fixed_poi
         for mine, other in (held, (finger.voltage, now.voltage)):
             if not (other is not None and math.isclose(mine, other, rel_tol=_SAME)):
                 raise ValueError("the state is not one of the scene's last loads, by whose numbers there are no slopes")
-        linear = Linearised(coupling, partial(quantities_of, finger), fixed_points)
+        linear = Linearised(coupling, partial(quantities_of, finger))
     except (ValueError, NotConverged) as error:  # a run keeps its states where slopes are lost
         return StateSlopes(str(error))
     scales, varied, left_out = dict[str, float](), {}, dict[str, str]()
@@ -179,6 +180,7 @@ def state_slopes(model: FingerModel, finger: Finger, load_number: int, fixed_poi
     return StateSlopes(
         values={key: model.given[key] for key in found},
         slopes={name: {key: each.by_step[name] / scales[key] for key, each in found.items()} for name in names},
+        stairs={name: {key: each.stair[name] / scales[key] for key, each in found.items()} for name in names},
         ends={key: (each.down * scales[key], each.up * scales[key]) for key, each in found.items()},
         left_out=left_out,
     )
