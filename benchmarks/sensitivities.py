@@ -1,9 +1,10 @@
-"""What moves friction: exact slopes of the default and the fitted finger, beside whole solves, and how smooth they are.
+"""What moves friction: slopes of the default and the fitted finger, beside whole solves, and how smooth they are.
 
-environment/run python3 -m benchmarks.sensitivities     prints them; some 20 minutes
+environment/run python3 -m benchmarks.sensitivities     prints them; some 40 minutes
 
-On the final mesh of each run, at full slip, numbers of the scene are changed a little to both sides, and the state is
-solved for again as a whole. Answers are kept in ``results/sensitivities``.
+On the final mesh of each run, at full slip, the state is solved for again as a whole with other numbers. A small change
+to both sides, within which no point comes into contact or leaves it, shows the exact slope of the stair. A cubic
+through wide changes is what a designer means. Answers are kept in ``results/sensitivities``.
 """
 
 import json
@@ -18,25 +19,27 @@ import numpy as np
 from benchmarks.harness import parser, solve
 
 DERJAGUIN = {"law": "Derjaguin", "mu_f": 0.2, "tau_0": 2e3}
-CASES: dict[str, Any] = {f"default, {volts:g} V": {"voltage": volts} for volts in (0.0, 100.0, 200.0)}
-CASES |= {f"fitted, {volts:g} V": {"finger": "fitted", "voltage": volts} for volts in (0.0, 100.0, 200.0)}
+CASES: dict[str, Any] = {f"default, {volts:g} V": {"voltage": volts} for volts in (200.0, 100.0, 0.0)}
+CASES |= {f"fitted, {volts:g} V": {"finger": "fitted", "voltage": volts} for volts in (200.0, 100.0, 0.0)}
+CASES |= {"default, 200 V, elements half as large": {"voltage": 200.0, "mesh": {"contact": 5e-6}}}
 CASES |= {"default with a shear stress, 200 V": {"voltage": 200.0, "friction": DERJAGUIN}}
 LAYER = "materials.stratum_corneum"
 KEYS = (
     "f_ext", "voltage", "friction", "friction.mu_f", "friction.tau_0", "roughness.young", "roughness.h_rms",
     "roughness.wavelength", "electric.d_i", "electric.eps_i", f"{LAYER}.shear_modulus", f"{LAYER}.alpha",
-    "materials.dermis.shear_modulus", "contact.eps_n",
+    "materials.dermis.shear_modulus", "geometry.ridge_amplitude", "geometry.sc_thickness",
 )  # fmt: skip
-PARTS = (1e-4, 1e-5)  # of a number to both sides; the smaller where points come or go, or slopes differ
-VOLTS = (-2.0, -1.0, -0.5, -0.25, 0.25, 0.5, 1.0, 2.0)  # V about the voltage, between which steps are seen
+PART = 2.5e-6  # of a number to both sides, for exact slopes
+WIDE = {"voltage": 2e-3, "friction": 2e-3}  # of a number, four times to both sides
 BEHIND = 3e-3  # m, of the anchors of friction, so that no point can stick
 NUMERICS = {"tolerance": 1e-12, "coupling_tolerance": 1e-11}
-LIMIT = 1800.0  # s of processor time, of each case
-_AGREES = 1e-6
+LIMIT = 3000.0  # s of processor time, of each case
+OF = ("mu_app", "contact_length")
+LEAST = 1e-9  # slopes below it are roundoff (m of the contact length)
 
 
 def whole(scene: Mapping[str, Any]) -> dict[str, Any]:
-    """Return slopes at full slip of a scene's run, those of whole solves, and the friction around its voltage."""
+    """Return slopes at full slip of a scene's run, and those of whole solves."""
     import fingerpad as fp
     from fingerpad.accuracy import solves
 
@@ -44,13 +47,14 @@ def whole(scene: Mapping[str, Any]) -> dict[str, Any]:
 
     def compared(model: Any, finger: Any, number: int) -> Any:
         begin = time.process_time()
-        slopes = kept_slopes(model, finger, number)
+        slopes = of_state(model, finger, number)
         if not slopes.why:
             found["seconds"], found["unknowns"] = time.process_time() - begin, finger.unknowns
             found.update(_compared(model, finger, number, slopes))
+            found["compared"] = time.process_time() - begin - found["seconds"]
         return slopes
 
-    kept_slopes = solves.state_slopes
+    of_state = solves.state_slopes
     solves.state_slopes = compared  # type: ignore[assignment]
     begin = time.process_time()
     output = {"receptors": False, "sensitivities": True}
@@ -62,48 +66,48 @@ def whole(scene: Mapping[str, Any]) -> dict[str, Any]:
 
 def _compared(model: Any, finger: Any, number: int, slopes: Any) -> dict[str, Any]:
     """Return what whole solves give, from the present state of a finger, which stays."""
-    from fingerpad.model.slopes import numbers_of, quantities_of
-    from variational.sensitivity import impose
+    from fingerpad.model.slopes import follower, numbers_of, quantities_of
+    from variational.numbers import impose
     from variational.solvers.coupling import AcceptedState
 
-    begin, place = time.process_time(), AcceptedState.of(finger.coupling)
-    touching = finger.observer.state().p_n > 0
+    place, places, observer = AcceptedState.of(finger.coupling), follower(finger), finger.observer
+    touching = observer.state().p_n > 0
 
-    def at(key: str, value: float) -> tuple[dict[str, float], int]:
-        solver, history = finger.solver, finger.problem.history
-        impose(finger.coupling, numbers_of(model.with_number(key, value), finger, number))
+    def at(key: str, part: float) -> tuple[list[float], int]:
+        solver, history, value = finger.solver, finger.problem.history, slopes.values[key] * (1 + part)
+        impose(finger.coupling, numbers_of(model.with_number(key, value), finger, number, places))
         history.accept({"anchor": history.accepted["anchor"] + np.sign(solver.reaction[0]) * BEHIND})
         solver.new_load(replace(solver.control), float(finger.problem.voltage.value), slipping=True, on_cone=False)
         try:
             finger.coupling.solve()
-            skin = finger.observer.state()
-            return quantities_of(finger, skin, solver.bone), int(((skin.p_n > 0) != touching).sum())
+            skin = observer.state()
+            values = quantities_of(finger, skin, observer.ridge_loads(skin), solver.bone)
+            return [values[name] for name in OF], int(((skin.p_n > 0) != touching).sum())
         finally:
-            impose(finger.coupling, numbers_of(model, finger, number))
+            impose(finger.coupling, numbers_of(model, finger, number, places))
             place.restore(finger.coupling)
 
-    apart = {}
-    for key in (key for key in KEYS if slopes.slopes["mu_app"].get(key)):
-        value, slope = slopes.values[key], {name: each[key] for name, each in slopes.slopes.items()}
-        for part in PARTS:
-            (more, came), (less, went) = at(key, value * (1 + part)), at(key, value * (1 - part))
-            relative = {
-                q: (more[q] - less[q]) / (2 * part * value) / slope[q] - 1 for q in ("mu_app", "contact_length")
-            }
-            apart[key] = {"part": part, "points": came + went, **relative}
-            if abs(relative["mu_app"]) <= _AGREES and not came + went:
-                break
+    def slope(of: Any, key: str) -> np.ndarray:
+        return np.array([of[name][key] * slopes.values[key] for name in OF])
+
+    apart, wide = {}, {}
+    keys = [key for key in KEYS if key in slopes.values and np.all(np.abs(slope(slopes.slopes, key)) > LEAST)]
+    for key in keys:
+        (more, came), (less, went) = at(key, PART), at(key, -PART)
+        relative = np.subtract(more, less) / (2 * PART) / slope(slopes.stairs, key) - 1
+        apart[key] = {"points": came + went, **dict(zip(OF, relative.tolist(), strict=True))}
         print(key, apart[key], file=sys.stderr, flush=True)
-    volts = model.given["voltage"]
-    stairs = {step: at("voltage", volts + step)[0]["mu_app"] for step in VOLTS} if volts else {}
-    exact = {"exact": slopes.slopes["mu_app"]["voltage"], "stairs": {str(k): mu for k, mu in stairs.items()}}
-    return {"apart": apart, "compared": time.process_time() - begin, **exact}
-
-
-def chords(case: Mapping[str, Any]) -> dict[float, float]:
-    """Return the slopes of friction by the voltage between voltages on both sides, by their distance (V)."""
-    mu = {float(step): value for step, value in case["stairs"].items()}
-    return {step: (mu[step] - mu[-step]) / (2 * step) for step in mu if step > 0}
+    for key in (key for key in WIDE if key in keys):
+        parts = WIDE[key] * np.arange(-4, 5)
+        values = np.array([at(key, part)[0] for part in parts])
+        chord = np.polyfit(parts, values, 3)[2]
+        wide[key] = {
+            "chord": chord.tolist(),
+            "slope": slope(slopes.slopes, key).tolist(),
+            "stair": slope(slopes.stairs, key).tolist(),
+        }
+        print(key, wide[key], file=sys.stderr, flush=True)
+    return {"apart": apart, "wide": wide}
 
 
 def main() -> int:
@@ -117,16 +121,22 @@ def main() -> int:
     for name, case in solve("benchmarks.sensitivities", CASES, args.out, args.jobs, LIMIT).items():
         if "failure" in case:
             continue
+        cost = f"slopes took {case['seconds']:.3g} of {case['run']:.3g} processor s"
+        print(f"\n{name}: µ_app {case['mu_app']:.6g}, {case['unknowns']} unknowns; {cost}.")
         print(
-            f"\n{name}: µ_app {case['mu_app']:.6g}, {case['unknowns']} unknowns; slopes took {case['seconds']:.3g} of "
+            "Elasticity (% for 1 %); exact slopes of µ_app and the contact length, relative distance from whole solves:"
         )
-        print(f"{case['run']:.3g} processor s. Elasticities (% for 1 %), and the relative distance from whole solves:")
         for row in case["rows"]:
             apart = case["apart"].get(row["number"], {})
-            words = f"{apart['mu_app']:9.1e} {apart['contact_length']:9.1e}, {apart['points']} points" if apart else ""
-            print(f"  {row['number']:42s} {row['elasticity']:10.6f}  {words}")
-        if case["stairs"]:
-            print(f"  slope by the voltage {case['exact']:.4e} per V; between voltages {chords(case)}")
+            words = "".join(f" {apart[name]:9.1e}" for name in OF) + f", {apart['points']} points" if apart else ""
+            print(f"  {row['number']:42s} {row['elasticity']:10.6f} {words}")
+        for key, each in case["wide"].items():
+            pairs = zip(OF, each["chord"], each["slope"], each["stair"], strict=True)
+            parts = (
+                f"{of} {chord:.5g}, slope {a / chord - 1:+.1%}, one stair {b / chord - 1:+.1%}"
+                for of, chord, a, b in pairs
+            )
+            print(f"  between whole solves over ±{4 * WIDE[key]:.1%} of {key}: {'; '.join(parts)}")
     return 0
 
 

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 _ALONG = 400  # places a ridge, between which the skin is straight
+_ITERATIONS, _ROUNDOFF = 50, 1e-14  # of angles (rad)
 _PHASES = np.linspace(0, np.pi, 2001)  # rad, half a period of a ridge's profile, which is even
 
 
@@ -65,6 +66,23 @@ class Profiles:
         normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
         outline = np.stack([a * np.sin(phi), b * (1 - np.cos(phi)) - self.lowered], axis=-1)
         return np.asarray(outline + np.asarray(depth, dtype=float)[..., None] * normal, dtype=float)
+
+    def below(self, points: Array) -> tuple[Array, Array]:
+        """Return the arc lengths and depths (m) of points, shape (n, 2), nearer to the outline than its evolute."""
+        a, b = self.finger.width / 2, self.finger.height / 2
+        x, y = points[:, 0], points[:, 1] + self.lowered - b
+        phi = np.arctan2(x / a, -y / b)
+        for _ in range(_ITERATIONS):  # Newton's method for the angle at which the way to the point is normal
+            sin, cos = np.sin(phi), np.cos(phi)
+            off = (x - a * sin) * a * cos + (y + b * cos) * b * sin
+            slope = -((a * cos) ** 2) - (b * sin) ** 2 - (x - a * sin) * a * sin + (y + b * cos) * b * cos
+            phi = phi - off / slope
+            if np.abs(off / slope).max(initial=0.0) < _ROUNDOFF:
+                break
+        sin, cos = np.sin(phi), np.cos(phi)
+        normal = np.stack([-sin / a, cos / b]) / np.hypot(sin / a, cos / b)
+        angles, arc = self._arc_table
+        return np.sign(phi) * np.interp(np.abs(phi), angles, arc), (x - a * sin) * normal[0] + (y + b * cos) * normal[1]
 
     @property
     def half_perimeter(self) -> float:

@@ -20,7 +20,7 @@ from fingerpad.results.slopes import rows
 from fingerpad.scene import SceneError, from_data
 from tests.runs import no_pictures
 from tests.small_finger import NINE
-from variational import sensitivity
+from variational import numbers, sensitivity
 from variational.solvers.coupling import AcceptedState
 
 pytestmark = pytest.mark.slow
@@ -32,7 +32,8 @@ LAYER = "materials.stratum_corneum"
 KEYS = (
     "f_ext", "voltage", "friction.mu_f", "friction.tau_0", "roughness.young", "roughness.h_rms", "roughness.wavelength",
     "electric.d_i", "electric.eps_i", f"{LAYER}.shear_modulus", f"{LAYER}.alpha", f"{LAYER}.poisson",
-    "materials.dermis.shear_modulus", "contact.eps_n",
+    "materials.dermis.shear_modulus", "contact.eps_n", "geometry.sc_thickness", "geometry.ridge_amplitude",
+    "geometry.ridge_wavelength", "geometry.intermediate_ridge_height",
 )  # fmt: skip
 BEHIND = 3e-3  # m, of anchors, so that no point can stick
 OF = ("mu_app", "contact_length", "p_max", "bone_height")
@@ -62,19 +63,20 @@ class Solved:
         """Return the quantities where a number is changed by a part of itself."""
         coupling, solver, history = self.finger.coupling, self.finger.solver, self.finger.problem.history
         place = AcceptedState.of(coupling)
-        sensitivity.impose(coupling, self.varied[key](part))
+        numbers.impose(coupling, self.varied[key](part))
         history.accept({"anchor": history.accepted["anchor"] + np.sign(solver.reaction[0]) * BEHIND})
         voltage = float(self.finger.problem.voltage.value)
         solver.new_load(replace(solver.control), voltage, slipping=True, on_cone=False)
         coupling.solve()
-        found = self.measure(self.finger.observer.state(), solver.bone)
-        sensitivity.impose(coupling, self.varied[key](0.0))
+        skin = self.finger.observer.state()
+        found = self.measure(skin, self.finger.observer.ridge_loads(skin), solver.bone)
+        numbers.impose(coupling, self.varied[key](0.0))
         place.restore(coupling)
         return found
 
     def slope(self, quantity, key):
-        """Return a slope for one whole of the number's amount."""
-        return self.found.slopes[quantity][key] * abs(self.found.values[key])
+        """Return a slope at fixed points in contact, for one whole of the number's amount."""
+        return self.found.stairs[quantity][key] * abs(self.found.values[key])
 
 
 @cache
@@ -147,7 +149,7 @@ def test_residual_is_derived_as_by_ufl():
     f = solver.layout.create_vector()
 
     def residual(part):
-        sensitivity.impose(mine.finger.coupling, mine.varied["voltage"](part))
+        numbers.impose(mine.finger.coupling, mine.varied["voltage"](part))
         solver.equations.residual(solver.x, f)
         return f.array_r.copy()
 
@@ -204,8 +206,8 @@ def test_command_prints_them(ran, tmp_path):
     with redirect_stdout(io.StringIO()) as out:
         assert sensitivities.main([str(ran[0]), "--csv", str(tmp_path / "slopes.csv")]) == 0
     lines = [line.split() for line in out.getvalue().splitlines()]
-    assert lines[3][0] == rows(ran[1])[0].key
-    assert ["contact.eps_t", "5e+10", "Pa/m", "0", "0"] in [line[:5] for line in lines]
+    assert lines[4][0] == rows(ran[1])[0].key
+    assert ["contact.eps_t", "5e+10", "Pa/m", "0", "0", "0"] in [line[:6] for line in lines]
     assert "adhesion.p_0 is left out: adhesion is" in out.getvalue()
     assert len((tmp_path / "slopes.csv").read_text().splitlines()) == 1 + len(rows(ran[1]))
 

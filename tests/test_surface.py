@@ -1,6 +1,7 @@
 """History, integrals, contact patches and the highest pressure of the surface, on any number of ranks."""
 
 from itertools import permutations
+from types import SimpleNamespace
 
 import basix.ufl
 import numpy as np
@@ -13,7 +14,8 @@ from geometry import tags
 from geometry.bodies import block
 from geometry.mesh import TaggedMesh, load
 from tests.measures import integral
-from variational.resultants import highest
+from variational.ends import Ends
+from variational.resultants import highest, neighbours
 from variational.surface import Surface
 
 pytestmark = pytest.mark.mpi
@@ -129,6 +131,10 @@ def facets(edges, p, closed=None):
     return force, width, width.copy() if closed is None else closed, ends
 
 
+def highest_of(force, width, closed, ends):
+    return highest(force, width, closed, neighbours(ends))
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_a_parabola_is_found_exactly_in_any_order_of_uneven_facets(seed):
     rng = np.random.default_rng(seed)
@@ -136,10 +142,10 @@ def test_a_parabola_is_found_exactly_in_any_order_of_uneven_facets(seed):
     at = rng.uniform(-0.3, 0.3)
     found = rng.permutation(13)
     given = facets(edges, lambda x: 3.0 - (x - at) ** 2)
-    assert highest(*(each[found] for each in given)) == pytest.approx(3.0, rel=1e-12)
+    assert highest_of(*(each[found] for each in given)) == pytest.approx(3.0, rel=1e-12)
     turned = [each[found] for each in given]
     turned[3] = turned[3][:, ::-1]  # from the second end to the first
-    assert highest(*turned) == pytest.approx(3.0, rel=1e-12)
+    assert highest_of(*turned) == pytest.approx(3.0, rel=1e-12)
 
 
 def test_a_saw_of_five_per_cent_within_facets_moves_it_by_less_than_a_thousandth():
@@ -150,7 +156,7 @@ def test_a_saw_of_five_per_cent_within_facets_moves_it_by_less_than_a_thousandth
         t = (x + 1) / width % 1
         return np.sqrt(np.maximum(1 - x**2, 0)) * (1 + saw * (6 * t * (1 - t) - 1))  # of no mean
 
-    smooth, rough = (highest(*facets(edges, lambda x, saw=saw: pressure(x, saw))) for saw in (0.0, 0.05))
+    smooth, rough = (highest_of(*facets(edges, lambda x, saw=saw: pressure(x, saw))) for saw in (0.0, 0.05))
     assert smooth == pytest.approx(1.0, abs=1e-3)
     assert rough == pytest.approx(smooth, abs=1e-3)
     assert pressure(np.linspace(-1, 1, 10001), 0.05).max() > 1.015  # what single points would give
@@ -160,7 +166,7 @@ def test_it_converges_with_the_facets_to_the_highest_value_of_a_hertzian_pressur
     errors = []
     for count in (8, 16, 32):
         edges = np.linspace(-1.1, 1.0, count + 1)
-        errors.append(abs(highest(*facets(edges, lambda x: np.sqrt(np.maximum(1 - x**2, 0)))) - 1))
+        errors.append(abs(highest_of(*facets(edges, lambda x: np.sqrt(np.maximum(1 - x**2, 0)))) - 1))
     assert errors[1] < errors[0] / 4
     assert errors[2] < errors[1] / 4
 
@@ -171,4 +177,28 @@ def test_the_half_of_a_symmetric_contact_has_the_value_of_the_whole():
     half = [each[6:] for each in whole]
     mirrored = [np.concatenate([each, each]) for each in half[:3]]
     mirrored.append(np.concatenate([half[3], half[3] * [-1.0, 1.0]]))
-    assert highest(*mirrored) == pytest.approx(highest(*whole), rel=1e-12)
+    assert highest_of(*mirrored) == pytest.approx(highest_of(*whole), rel=1e-12)
+
+
+# -- how the ends of contact move, by the pressure of facets in full contact --------------------------------
+@pytest.mark.parametrize("tilt", [0.0, 0.3])
+def test_ends_of_a_cylinders_contact_move_as_its_pressure_does(tilt):
+    """Ends at -49.3 and 50.4 µm on facets of 2 µm, which move by -1 and +2 as the pressure grows."""
+    edges = 1e-6 * np.linspace(-60.0, 60.0, 61)
+    gauss, weights = np.polynomial.legendre.leggauss(4)
+    x = edges[:-1, None] + np.diff(edges)[:, None] * (1 + gauss) / 2
+
+    def state(part):
+        left, right, scale = -49.3e-6 - part, 50.4e-6 + 2 * part, 1e10 * (1 + 3e4 * part)
+        square = scale * (right - x) * (x - left) * (1 + tilt * x / 60e-6)
+        return SimpleNamespace(x=x, p_n=np.sqrt(np.maximum(square, 0)))
+
+    pairs = np.stack([edges[:-1], edges[1:]], axis=1)
+    surface = SimpleNamespace(
+        ends=lambda: np.stack([pairs, 0 * pairs], axis=2), ridge=np.zeros(60, int), ridge_numbers=[0],
+        mesh=SimpleNamespace(comm=MPI.COMM_SELF), weights=weights / 2,
+    )  # fmt: skip
+    ends, h = Ends(surface, state(0.0)), 1e-11
+    change = SimpleNamespace(x=0 * x, p_n=(state(h).p_n - state(-h).p_n) / (2 * h))
+    assert ends.located.all()
+    assert ends.rates(change) == pytest.approx(3.0, rel=2e-3)

@@ -80,6 +80,7 @@ class Observer:
         c, place = problem.contact, [problem.x, problem.y, problem.opening]
         self.evaluated = [*place, c.new_anchor, c.p_n, c.t_t, problem.p_el, *problem.area, c.limit]
         self._rules: dict[str, int] = {}  # of history: place among what is compiled
+        self._beside: list[tuple[NDArray[np.int64], NDArray[np.int64]]] = []  # each ridge's facets' neighbours
 
     def state(self) -> SurfaceState:
         """Evaluate the surface in the problem's current state, with what it leaves in the history; collective."""
@@ -150,8 +151,10 @@ class Observer:
         if self.mirrored:
             force, width, closed, ridge = (np.concatenate([each, each]) for each in (force, width, closed, ridge))
             ends = np.concatenate([ends, ends * [-1.0, 1.0]])
-        of = (ridge == k for k in range(len(surface.ridge_numbers)))
-        return np.array([highest(force[k], width[k], closed[k], ends[k]) for k in of])
+        of = [ridge == k for k in range(len(surface.ridge_numbers))]
+        self._beside = self._beside or [neighbours(ends[k]) for k in of]
+        pairs = zip(of, self._beside, strict=True)
+        return np.array([highest(force[k], width[k], closed[k], beside) for k, beside in pairs])
 
     def penetration(self, state: SurfaceState) -> float:
         """Return how deep the skin is in the screen where it bears pressure (m), the largest of all ranks' points."""
@@ -159,21 +162,21 @@ class Observer:
         return float(np.max(self.problem.mesh.comm.allgather(deepest)))
 
 
-def highest(force: Array, width: Array, closed: Array, ends: Array) -> float:
+def highest(force: Array, width: Array, closed: Array, beside: tuple[NDArray[np.int64], NDArray[np.int64]]) -> float:
     """Return the highest pressure (Pa), zero without contact.
 
     Args:
         force: contact force per length of each facet (N/m), shape (facets,).
         width: current length of each facet (m).
         closed: its part in contact (m).
-        ends: reference places of its ends (m), shape (facets, 2, 2).
+        beside: :func:`neighbours` of the facets.
 
     A mean counts, too: of a facet that is partly in contact that over this part.
     """
     touching = (force > 0) & (closed > 0)
     if not touching.any():
         return 0.0
-    before, after = _neighbours(ends)
+    before, after = beside
     mean = force / width
     inside = np.flatnonzero(touching & (before >= 0) & (after >= 0) & (closed >= 0.5 * width))
     around = np.stack([before[inside], inside, after[inside]], axis=1)
@@ -181,8 +184,12 @@ def highest(force: Array, width: Array, closed: Array, ends: Array) -> float:
     return float(np.concatenate([means, _tops(mean[around], width[around])]).max())
 
 
-def _neighbours(ends: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return the facet beyond each facet's first and second end, -1 where there is none."""
+def neighbours(ends: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return the facet beyond each facet's first and second end, -1 where there is none.
+
+    Args:
+        ends: reference places of the facets' ends (m), shape (facets, 2, 2).
+    """
     places = np.rint(ends.reshape(-1, 2) / _SAME_PLACE).astype(np.int64)
     _, vertex = np.unique(places, axis=0, return_inverse=True)
     vertex = np.asarray(vertex).ravel()

@@ -11,22 +11,24 @@ friction, so that its traction follows from the pressure and no history stands i
 .. math:: \dot x = a + B \dot d, \quad K a = -R_\theta, \quad K B = -R_d, \qquad
           (I - D_p (P_x B + P_d)) \, \dot d = D_p (P_x a + P_\theta) + D_\theta
 
-One factorisation serves all right sides, of which there is one for each number and each ridge. They are solved
-together. The solves are forward ones: all quantities follow from them, and the numbers are few. (An adjoint solve for
-each quantity has the same factorisation; it would need the gradient of each quantity.) The small system is that of
-Woodbury: the ridges change K by a matrix of their number's rank. Rows that are prescribed have the derivative of what
-is prescribed.
+One factorisation serves all right sides, of which there is one for each number and each ridge. The solves are forward
+ones: all quantities follow from them, and an adjoint solve would need the gradient of each. The small system is that of
+Woodbury: the ridges change K by a matrix of their number's rank. Prescribed rows have the derivative of their values.
 
 :math:`R_\theta` is a central difference quotient of R at fixed x and d: no step of Newton's method and no kink lies
 between, since points change neither contact nor direction while x stays. So are :math:`P_\theta, D_\theta`. Numbers
 of no layer change R on the skin alone. :math:`R_d` and the derivatives of the skin by x and d are UFL's. A quantity
 is a function of the values at the Gauss points, which are moved along their derivatives by some picometres.
 
-The derivative is that with the points in contact as they are. As a number changes, points come and go one by one, and
-the quantity is smooth between. A ridge that comes or goes makes a kink or a jump: :attr:`Slopes.up` and ``down``.
+As a number changes, points come into contact and leave it one by one. The exact derivative is that of one stair
+between, whose largest error is that of the ridges' lengths. So lengths change as the ends of contact move
+(:mod:`variational.ends`). A ridge that comes or goes makes a kink or a jump: :attr:`Slopes.up` and ``down``.
+
+Where a number moves the nodes of the mesh, a state has the nodes' places after deformation for its unknowns: then skin
+in contact stays where it is as the number changes alone.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
@@ -37,12 +39,12 @@ from petsc4py import PETSc
 
 from variational import jit
 from variational.contact.formulation import SurfaceState
-from variational.contact.interface import Interface
-from variational.materials.material import Material
-from variational.roughness.closure import Closure, air_gaps
+from variational.ends import Ends
+from variational.numbers import Numbers, impose
+from variational.resultants import RidgeLoads
+from variational.roughness.closure import air_gaps
 from variational.solvers.coupling import AcceptedState, Coupling
 from variational.solvers.outcome import NotConverged, linear_failure
-from variational.solvers.target import Control
 
 Array = NDArray[np.float64]
 STEP = 1e-5
@@ -56,23 +58,13 @@ _VALUES = [f.name for f in fields(SurfaceState) if f.name != "history"]
 
 
 @dataclass(frozen=True)
-class Numbers:
-    """All that a state of equilibrium depends on, but for the shape of the body; the voltage in V."""
-
-    solids: Mapping[int, Material]
-    """Material of each layer's tag."""
-    interface: Interface
-    closure: Closure | None
-    control: Control
-    voltage: float
-
-
-@dataclass(frozen=True)
 class Slopes:
     """Derivatives by one number, whose unit step is :attr:`Varied.scale`."""
 
     by_step: dict[str, float]
     """Of each quantity, for one scale of the number."""
+    stair: dict[str, float]
+    """The same at fixed points in contact: the exact derivative until the next point comes or goes."""
     down: float
     up: float
     """How far the number can fall and rise, in its scale, until a ridge comes or goes, by straight extrapolation."""
@@ -80,8 +72,8 @@ class Slopes:
 
 Varied = Callable[[float], Numbers]
 """Returns the numbers with one of a scene's changed by a part of its scale; at 0 they are those of the state."""
-Measure = Callable[[SurfaceState, Array], Mapping[str, float]]
-"""Returns quantities of a skin and of the bone's translation (m), shape (2,); collective."""
+Measure = Callable[[SurfaceState, RidgeLoads, Array], Mapping[str, float]]
+"""Returns quantities of a skin, of the ridges' resultants and of the bone's translation (m), shape (2,); collective."""
 
 
 def _quotient(values: Callable[[float], Array], step: float) -> Array:
@@ -106,20 +98,6 @@ def refuse(coupling: Coupling) -> None:
         raise ValueError("points stick, so that the state depends on its path and has no slope; full slip has one")
 
 
-def impose(coupling: Coupling, numbers: Numbers) -> None:
-    """Give a problem other numbers, at the unknowns and air gaps that it has; collective.
-
-    Raises:
-        ValueError: a law is of another kind than before.
-    """
-    problem = coupling.solver.problem
-    problem.set_interface(numbers.interface)
-    problem.set_solids({tag: numbers.solids[tag] for tags in problem.laws for tag in tags})
-    problem.voltage.value, coupling.solver.control = numbers.voltage, replace(numbers.control)
-    coupling.closure = numbers.closure
-    coupling.set_air_gaps(coupling.d_eq)
-
-
 @dataclass(frozen=True)
 class _Fixed:
     """Derivatives by one number at fixed unknowns and air gaps."""
@@ -128,9 +106,9 @@ class _Fixed:
     skin: Array
     """Of the values at the Gauss points."""
     gaps: Array
-    """Of the closure's air gaps."""
+    """Of the closure's air gaps, at fixed values at the Gauss points."""
     explicit: Array
-    """Of the quantities; empty where none depends on a number but by the skin."""
+    """Of the quantities; a zero where none depends on a number but by the skin."""
 
 
 class Linearised:
@@ -197,31 +175,41 @@ class Linearised:
 
     def _solve(self, right: list[Array]) -> list[Array]:
         """Return minus K^-1 of right sides, this rank's parts; collective."""
-        local = self.solver.layout.local_size
-        size = ((local, self.solver.layout.global_size), (PETSc.DECIDE, len(right)))
-        B = PETSc.Mat().createDense(size, array=-np.stack(right, axis=1), comm=self.solver.layout.comm)
+        layout, sides = self.solver.layout, np.stack(right)
+        some = np.any(layout.comm.allgather((sides != 0).any(axis=1)), axis=0)  # numbers of the closure have none
+        if not some.any():
+            return [*sides]
+        size = ((layout.local_size, layout.global_size), (PETSc.DECIDE, int(some.sum())))
+        B = PETSc.Mat().createDense(size, array=-sides[some].T, comm=layout.comm)
         X = B.duplicate()
         self._ksp.getPC().getFactorMatrix().matSolve(B, X)
-        found = [*X.getDenseArray().T.copy()]
+        sides[some] = X.getDenseArray().T
         B.destroy()
         X.destroy()
-        return found
+        return [*sides]
 
     # -- derivatives at fixed unknowns -----------------------------------------------------------------
     def _fixed(self, varied: Varied) -> "_Fixed":
         """Return the derivatives by a number at fixed unknowns and air gaps; collective."""
         p_c, solver = self._pressures(self._skin), self.solver
-        f = solver.layout.create_vector()
+        f, x = solver.layout.create_vector(), solver.x.copy()
         sizes = [solver.layout.local_size, _stack(self._skin).size, len(p_c)]
-
-        part = self._on_skin if varied(STEP).solids == varied(-STEP).solids else None
+        up, down = varied(STEP), varied(-STEP)
+        moves = not np.array_equal(up.places, down.places)
+        part = None if moves or up.solids != down.solids else self._on_skin
+        depends = moves or self.problem.interface.adhesion is not None
 
         def values(step: float) -> Array:
             impose(self.coupling, varied(step))
-            solver.equations.residual(solver.x, f, part)
+            if moves:  # the nodes, and by their displacement back to where they are in the state
+                displacement = self._displacement - (self.problem.V.tabulate_dof_coordinates()[:, :2] - self._nodes)
+                solver.layout.from_nodes(displacement.ravel(), solver.bone, x)
+            solver.equations.residual(x, f, part)
             closure = self.coupling.closure if self._charged else None
-            gaps = np.zeros_like(p_c) if closure is None else air_gaps(closure, p_c)
-            found = self.measure(self._skin, solver.bone) if self.problem.interface.adhesion else {}  # else without
+            p = self._pressures(self._skin) if moves else p_c
+            gaps = np.zeros_like(p_c) if closure is None else air_gaps(closure, p)
+            loads = self.observer.ridge_loads(self._skin)
+            found = self.measure(self._skin, loads, solver.bone) if depends else {"": 0.0}
             return np.concatenate([f.array_r, _stack(self.observer.state()).ravel(), gaps, [*found.values()]])
 
         residual, skin, gaps, explicit = np.split(_quotient(values, STEP), np.cumsum(sizes))
@@ -229,19 +217,6 @@ class Linearised:
 
     def _pressures(self, state: SurfaceState) -> Array:
         return self.observer.ridge_loads(state, self.coupling.by_gap).p_c
-
-    def _pressures_along(self, change: Array, dd: Array) -> Array:
-        """Return the derivative of the ridges' mean contact pressures along a change of the skin and of air gaps."""
-        d_eq, by_gap = self.coupling.d_eq, self.coupling.by_gap
-
-        def values(skin: SurfaceState, part: float) -> Array:
-            if by_gap:  # the length below the air gap depends on it
-                self.problem.set_air_gaps(d_eq + part * dd)
-            return self._pressures(skin)
-
-        found = self._along_skin(values, change)
-        self.coupling.set_air_gaps(d_eq)
-        return found
 
     def _closure_slope(self, p_c: Array) -> Array:
         """Return the derivative of the closure's air gaps (m/Pa)."""
@@ -273,14 +248,45 @@ class Linearised:
             function.x.array[surface.pairs[:, 0]] = values[surface.ridge]
             function.x.scatter_forward()
 
-    def _along_skin(self, values: Callable[[SurfaceState, float], Array], change: Array) -> Array:
-        """Return the derivative of a function of the skin along a change of it; collective."""
-        skin = _stack(self._skin)
-        gap = _VALUES.index("gap")
-        moved = np.abs(change[gap], where=skin[gap] < _NEAR, out=np.zeros_like(skin[gap])).max(initial=0.0)
+    def _results(self, skin: SurfaceState, length: Array, bone: Array) -> Array:
+        """Return mean contact pressures (Pa), the quantities, and of each ridge how far it is from the next kink.
+
+        Args:
+            skin: values at the Gauss points.
+            length: of the ridges in contact (m).
+            bone: translation (m).
+        """
+        loads = replace(self.observer.ridge_loads(skin), length=length)
+        p_c = self._pressures(skin) if self.coupling.by_gap else loads.p_c
+        found = self.measure(skin, loads, bone)
+        self._names = [*found]
+        return np.concatenate([p_c, [*found.values()], self._margins(skin, loads)])
+
+    def _results_along(self, change: Array, dx: Array, dd: Array) -> Array:
+        """Return the derivatives of the results along a change of the skin, of unknowns and of air gaps; collective.
+
+        In two rows: with the ridges' lengths as their ends move, and as they do at fixed points in contact.
+        """
+        skin, gap = _stack(self._skin), self._skin.gap
+        moved = np.abs(change[_VALUES.index("gap")], where=gap < _NEAR, out=np.zeros_like(gap)).max(initial=0.0)
         most = max(self.problem.mesh.comm.allgather(float(moved)))
         step = min(_MOVE / most, _OF_MOVE) if most > 0 else _OF_MOVE
-        return _quotient(lambda part: values(SurfaceState(*(skin + part * change)), part), step)
+        smooth, d_eq = self._ends.rates(SurfaceState(*change)), self.coupling.d_eq
+        vector = self.solver.layout.create_vector()
+        vector.array_w[:] = dx
+        bone = self.solver.layout.rigid_part(vector)
+
+        def results(part: float) -> Array:
+            there = SurfaceState(*(skin + part * change))
+            stair = self.observer.ridge_loads(there).length
+            ends = np.where(self._ends.located, self._length + part * smooth, stair)
+            if self.coupling.by_gap:  # the length below the air gap depends on it
+                self.problem.set_air_gaps(d_eq + part * dd)
+            return np.stack([self._results(there, each, self.solver.bone + part * bone) for each in (ends, stair)])
+
+        found = _quotient(results, step)
+        self.coupling.set_air_gaps(d_eq)
+        return found
 
     # -- all numbers -----------------------------------------------------------------------------------
     def slopes(self, varied: Mapping[str, Varied]) -> dict[str, Slopes]:
@@ -292,6 +298,10 @@ class Linearised:
 
     def _by(self, varied: Mapping[str, Varied]) -> dict[str, Slopes]:
         self._skin = self.observer.state()
+        self._ends = Ends(self.problem.surface, self._skin)
+        self._length = self.observer.ridge_loads(self._skin).length
+        self._nodes = self.problem.V.tabulate_dof_coordinates()[:, :2]
+        self._displacement = self.problem.w.x.array.reshape(-1, 2).copy()
         none = np.zeros_like(self.coupling.d_eq)
         unit = [np.eye(len(none))[k] for k in range(len(none) if self._charged else 0)]
         right, f = list[Array](), self.solver.layout.create_vector()
@@ -304,46 +314,35 @@ class Linearised:
         self._place.restore(self.coupling)
         solved = self._solve([*right, *(each.residual for each in fixed.values())])
         B, of_numbers = solved[: len(unit)], dict(zip(fixed, solved[len(unit) :], strict=True))
-        skins = [self._skin_along(*pair) for pair in zip(B, unit, strict=True)]
-        loop = np.eye(len(unit))
-        if len(unit):
-            closure_slope = self._closure_slope(self._pressures(self._skin))
-            moved = [self._pressures_along(*pair) for pair in zip(skins, unit, strict=True)]
-            loop = loop - closure_slope[:, None] * np.stack(moved, axis=1)
+        count, pairs = len(unit), zip(B, unit, strict=True)
+        by_gaps = [self._results_along(self._skin_along(b, each), b, each) for b, each in pairs]
+        closure_slope = self._closure_slope(self._pressures(self._skin)) if count else none
         found = {}
         for key, a in of_numbers.items():
-            skin = fixed[key].skin + self._skin_along(a, none)
-            if len(unit):
-                dd = np.linalg.solve(loop, closure_slope * self._pressures_along(skin, none) + fixed[key].gaps)
-                skin = skin + sum(d * each for d, each in zip(dd, skins, strict=True))
-                a = a + sum(d * b for d, b in zip(dd, B, strict=True))
-            found[key] = self._slopes(a, skin, fixed[key].explicit)
+            both = [*self._results_along(fixed[key].skin + self._skin_along(a, none), a, none)]
+            for k, each in enumerate(both) if count else ():
+                of_gaps = np.stack([pair[k] for pair in by_gaps])
+                loop = np.eye(count) - closure_slope[:, None] * of_gaps[:, :count].T
+                both[k] = each + np.linalg.solve(loop, closure_slope * each[:count] + fixed[key].gaps) @ of_gaps
+            found[key] = self._slopes([each[len(none) :] for each in both], fixed[key].explicit)
         return found
 
-    def _slopes(self, dx: Array, change: Array, explicit: Array) -> Slopes:
-        """Return the derivatives of the quantities along a change of the state."""
-        step = self.solver.layout.create_vector()
-        step.array_w[:] = dx
-        bone = self.solver.layout.rigid_part(step)
-        names = [*self.measure(self._skin, self.solver.bone)]
-
-        def values(skin: SurfaceState, part: float) -> Array:
-            return np.array([*self.measure(skin, self.solver.bone + part * bone).values(), *self._margins(skin)])
-
-        found = self._along_skin(values, change)
-        by_step = dict(zip(names, map(float, found[: len(names)] + (explicit if len(explicit) else 0.0)), strict=True))
+    def _slopes(self, along: Sequence[Array], explicit: Array) -> Slopes:
+        """Return the derivatives of the quantities from those of quantities and margins, in both ways."""
+        count = len(self._names)
+        smooth, stair = (dict(zip(self._names, map(float, each[:count] + explicit), strict=True)) for each in along)
         with np.errstate(divide="ignore", invalid="ignore"):
-            ends = -self._margins(self._skin) / found[len(names) :]
+            ends = -self._margins(self._skin, self.observer.ridge_loads(self._skin)) / along[0][count:]
         ends = ends[np.isfinite(ends)]
-        return Slopes(by_step, float((-ends[ends < 0]).min(initial=np.inf)), float(ends[ends > 0].min(initial=np.inf)))
+        down, up = -ends[ends < 0], ends[ends > 0]
+        return Slopes(smooth, stair, float(down.min(initial=np.inf)), float(up.min(initial=np.inf)))
 
-    def _margins(self, skin: SurfaceState) -> Array:
+    def _margins(self, skin: SurfaceState, loads: RidgeLoads) -> Array:
         """Return of each ridge its contact force (N/m), or without one the gap of its lowest point (m); collective."""
         surface = self.problem.surface
         gap = np.array([skin.gap[surface.ridge == k].min(initial=np.inf) for k in range(len(surface.ridge_numbers))])
         gap = np.min(surface.mesh.comm.allgather(gap), axis=0)
-        force = surface.per_ridge(skin.p_n)
-        return np.asarray(np.where(force > 0, force, gap))
+        return np.asarray(np.where(loads.f_contact > 0, loads.f_contact, gap))
 
 
 def _stack(skin: SurfaceState) -> Array:

@@ -79,9 +79,8 @@ class Surface:
         if mesh.comm.allreduce(doubled):
             raise ValueError("a cell has two facets on the touching surface; use smaller surface elements")
 
-        nodes = self._nodes()
-        self.measure_at = np.linalg.norm(np.einsum("kp,fki->fpi", self._slopes(nodes.shape[1]), nodes), axis=2)
-        self.length = self.measure_at @ self.weights
+        self._ways: fem.Function | None = None
+        self.follow()
         # Powers of the facet coordinate at the points: interpolation is exact for the traces of elements
         # of a degree below the number of points.
         self._to_powers = np.linalg.inv(np.vander(self.points[:, 0], increasing=True))
@@ -89,7 +88,15 @@ class Surface:
         bernstein = np.array([[math.comb(i, k) / math.comb(n[-1], k) for k in n] for i in n])
         self._to_bernstein = bernstein @ self._to_powers
         self._history_maps()
-        self._reversed = self._point_order(nodes)
+        self._reversed = self._point_order(self._nodes())
+
+    def follow(self) -> None:
+        """Take the facets as they are now, after the mesh's nodes have moved."""
+        nodes = self._nodes()
+        self.measure_at = np.linalg.norm(np.einsum("kp,fki->fpi", self._slopes(nodes.shape[1]), nodes), axis=2)
+        self.length = self.measure_at @ self.weights
+        if self._ways is not None:
+            self._write_ways(self._ways)
 
     def heights_along(self, y, w_y) -> list:
         """Return heights (m) from end to end of the part of its facet that each point stands for, evenly spaced; UFL.
@@ -101,6 +108,17 @@ class Surface:
             y: current height (m).
             w_y: the vertical displacement in it (m).
         """
+        shape = (_PIECES + 1, 2)
+        self._ways = ways = fem.Function(
+            fem.functionspace(self.mesh, ("Discontinuous Lagrange", len(self.weights) - 1, shape))
+        )
+        self._write_ways(ways)
+        slope, bend = ufl.grad(w_y), ufl.grad(ufl.grad(w_y))
+        every = [ufl.as_vector([ways[k, 0], ways[k, 1]]) for k in range(shape[0])]
+        return [y + way[1] + ufl.dot(way, slope) + ufl.dot(way, bend * way) / 2 for way in every]
+
+    def _write_ways(self, ways: fem.Function) -> None:
+        """Write the ways (m) from each point to places along the part of its facet."""
         nodes, parts = self._nodes(), np.arange(_PIECES + 1) / _PIECES
         element = basix.create_element(basix.ElementFamily.P, basix.CellType.interval, nodes.shape[1] - 1)
 
@@ -108,16 +126,12 @@ class Surface:
             shapes: Array = np.asarray(element.tabulate(0, xi[:, None]), dtype=float)[0, :, :, 0]
             return np.asarray(np.einsum("pk,fki->fpi", shapes, nodes))
 
-        space = fem.functionspace(self.mesh, ("Discontinuous Lagrange", len(self.weights) - 1, (len(parts), 2)))
-        ways, component = fem.Function(space), fem.Function(self.history_space)
+        component = fem.Function(self.history_space)
         for k, part in enumerate(parts):
             way = places(np.cumsum(self.weights) - (1 - part) * self.weights) - places(self.points[:, 0])
             for i in range(2):
                 self.set_history(component, way[:, :, i])
                 ways.x.array.reshape(-1, len(parts), 2)[:, k, i] = component.x.array
-        slope, bend = ufl.grad(w_y), ufl.grad(ufl.grad(w_y))
-        every = [ufl.as_vector([ways[k, 0], ways[k, 1]]) for k in range(len(parts))]
-        return [y + way[1] + ufl.dot(way, slope) + ufl.dot(way, bend * way) / 2 for way in every]
 
     def _nodes(self) -> Array:
         """Return the places (m) of each facet's ends and, of second order, its middle, shape (facets, 2 or 3, 2)."""

@@ -14,7 +14,8 @@ _EXAMPLES = """
     fingerpad sensitivities results/mine
     fingerpad sensitivities results/mine --of contact_length --csv slopes.csv --plot slopes.png
 """
-_COLUMNS = tuple(Output(name, "") for name in ("key", "value", "unit", "slope", "elasticity", "lowest", "highest"))
+_NUMBERS = ("value", "slope", "scatter", "elasticity", "lowest", "highest")
+_COLUMNS = tuple(Output(name, "") for name in ("key", "value", "unit", *_NUMBERS[1:]))
 _DRAWN = 15  # bars of the picture
 
 
@@ -28,11 +29,9 @@ def main(argv: Sequence[str]) -> int:
     args = parser.read(argv)
     result = Result.load(args.folder)
     found = [row._asdict() for row in rows(result, args.of, args.state)]
-    printed = [
-        row | {name: f"{row[name]:.4g}" for name in ("value", "slope", "elasticity", "lowest", "highest")}
-        for row in found
-    ]
-    echo(f"Slopes of {STEPS[args.of].words}, SI; elasticity: % of it for 1 % of the number:")
+    printed = [row | {name: f"{row[name]:.4g}" for name in _NUMBERS} for row in found]
+    echo(f"Slopes of {STEPS[args.of].words}, SI; scatter: their change where points in contact stay as they are;")
+    echo("elasticity: % for 1 % of the number:")
     echo(output.text(_COLUMNS, printed))
     echo("Between lowest and highest the same ridges touch, by straight extrapolation; inf: at all values allowed.")
     for key, why in left_out(result, args.state).items():

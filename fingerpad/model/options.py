@@ -53,7 +53,7 @@ _WIDENS, _ROLLS = 0.27, 0.3  # powers of the force and of a larger friction coef
 _FEWEST = 2  # ridges on either side
 _PRESSURE = 30e3  # Pa, mean contact pressure of ridges, at which a friction law other than Coulomb's is evaluated
 
-_NO_PHYSICS = "mesh numerics output accuracy slices slide_length geometry".split()  # tables and keys
+_NO_PHYSICS = "mesh numerics output accuracy slices slide_length".split()  # tables and keys
 
 
 @dataclass(frozen=True)

@@ -2,11 +2,11 @@
 
 A number of the scene acts through the numbers of the model that follow from it: the thickness of the coating through
 that of the insulators, and through the closure. Each of these models is made, and the laws and loads of the state are
-given their numbers. The shape of the finger is left out, whose numbers move the mesh.
+given their numbers. Layers and ridges of another size move the nodes of the mesh (:mod:`geometry.morph`).
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cache, partial
 from typing import Any
@@ -21,8 +21,11 @@ from fingerpad.results.slopes import SLOPES
 from fingerpad.scene import Scene
 from fingerpad.scene.controls import number_of
 from fingerpad.scene.keys import by_name
+from geometry.morph import Morph
 from variational.contact.formulation import SurfaceState
-from variational.sensitivity import STEP, Linearised, Numbers, impose
+from variational.numbers import Numbers, impose
+from variational.resultants import RidgeLoads
+from variational.sensitivity import STEP, Linearised
 from variational.solvers.outcome import NotConverged
 from variational.solvers.target import Control
 
@@ -39,6 +42,8 @@ class StateSlopes:
     """Of the scene, by dotted key; SI."""
     slopes: Mapping[str, Mapping[str, float]] | None = None
     """Derivative of each quantity by each number, by quantity and key; SI."""
+    stairs: Mapping[str, Mapping[str, float]] | None = None
+    """The same at fixed points in contact: exact until the next one comes or goes (:mod:`variational.sensitivity`)."""
     ends: Mapping[str, tuple[float, float]] | None = None
     """How far each number can fall and rise (SI) until a ridge comes or goes, by straight extrapolation."""
     left_out: Mapping[str, str] | None = None
@@ -68,11 +73,35 @@ def of_run(model: FingerModel, simulation: Simulation, states: Mapping[str, Any]
     return {SLOPES: {name: each.to_dict() for name, each in found.items()}}
 
 
-def numbers_of(model: FingerModel, finger: Finger, load_number: int) -> Numbers:
+def follower(finger: Finger) -> Callable[[FingerModel], Array]:
+    """Return what moves the nodes of a finger's mesh: places on this rank (m), shape (nodes, 3), by a model.
+
+    The function raises a ValueError where the mesh cannot follow the model's geometry.
+    """
+    here = finger.problem.mesh.geometry.x.copy()
+    morph = cache(lambda: Morph(finger.profiles.finger, here[:, :2]))
+
+    def places(model: FingerModel) -> Array:
+        if model.geometry == finger.profiles.finger:
+            return here
+        if model.mesh_file is not None:
+            raise ValueError("the mesh is that of a file, which does not follow it")
+        return np.column_stack([morph().to(model.geometry), here[:, 2]])
+
+    return places
+
+
+def numbers_of(model: FingerModel, finger: Finger, load_number: int, places: Callable[[FingerModel], Array]) -> Numbers:
     """Return the numbers of a model at the end of one of its loads, from 1, for a finger that stands where it is.
 
+    Args:
+        model: the model.
+        finger: the finger.
+        load_number: of the load.
+        places: moves the mesh (:func:`follower`).
+
     Raises:
-        ValueError: the load is one over time.
+        ValueError: the load is one over time, or the mesh cannot follow.
     """
     given = model.loads[:load_number]
     pressed = [(load.f_ext, load.bone_height) for load in given if (load.f_ext, load.bone_height) != (None, None)]
@@ -85,18 +114,19 @@ def numbers_of(model: FingerModel, finger: Finger, load_number: int) -> Numbers:
         adhesion=model.adhesion,
     )  # fmt: skip
     control = Control(finger.solver.control.x, height, force or 0.0)
-    return Numbers(model.solids, interface, model.closure, control, float(level))
+    return Numbers(model.solids, interface, model.closure, control, float(level), places(model))
 
 
-def quantities_of(finger: Finger, skin: SurfaceState, bone: Array) -> dict[str, float]:
+def quantities_of(finger: Finger, skin: SurfaceState, loads: RidgeLoads, bone: Array) -> dict[str, float]:
     """Return the quantities that have slopes; collective.
 
     Args:
         finger: whose skin it is.
         skin: values at its points.
+        loads: resultants of its ridges.
         bone: translation of the bone (m), shape (2,).
     """
-    loads, peaks = finger.observer.ridge_loads(skin), finger.observer.highest_pressures(skin)
+    peaks = finger.observer.highest_pressures(skin)
     if not finger.options.both_halves:
         loads, peaks = loads.whole(), both_sides(peaks)
     f_t, pull = -float(loads.f_friction.sum()), float(loads.f_attraction.sum())
@@ -114,10 +144,10 @@ def state_slopes(model: FingerModel, finger: Finger, load_number: int) -> StateS
         finger: in a state of equilibrium.
         load_number: of the load that the state is of, from 1.
     """
-    coupling, control = finger.coupling, finger.solver.control
+    coupling, control, places = finger.coupling, finger.solver.control, follower(finger)
 
     def numbers(of: FingerModel) -> Numbers:
-        return numbers_of(of, finger, load_number)
+        return numbers_of(of, finger, load_number, places)
 
     try:
         now = numbers(model)
@@ -150,6 +180,7 @@ def state_slopes(model: FingerModel, finger: Finger, load_number: int) -> StateS
     return StateSlopes(
         values={key: model.given[key] for key in found},
         slopes={name: {key: each.by_step[name] / scales[key] for key, each in found.items()} for name in names},
+        stairs={name: {key: each.stair[name] / scales[key] for key, each in found.items()} for name in names},
         ends={key: (each.down * scales[key], each.up * scales[key]) for key, each in found.items()},
         left_out=left_out,
     )

@@ -25,6 +25,8 @@ class Row(NamedTuple):
     unit: str
     slope: float
     """Derivative; 0 by a number without effect."""
+    scatter: float
+    """By how much the derivative is another one at fixed points in contact, until the next one comes or goes."""
     elasticity: float
     """Per cent of the quantity for one per cent of the number."""
     lowest: float
@@ -50,15 +52,15 @@ def rows(result: ResultData, quantity: str = "mu_app", state: str = "") -> list[
     at, keys = getattr(result.named[name], quantity), by_name(type(result.scene))
 
     def row(key: str, slope: float) -> Row:
-        value = found["values"][key]
+        value, scatter = found["values"][key], abs(slope - found.get("stairs", found["slopes"])[quantity][key])
         down, up = (np.inf if end is None else end for end in found["ends"][key])
         elasticity, lowest, highest = slope * value / at if at else np.nan, value - down, value + up
         if key not in keys:
-            return Row(key, value, "", slope, elasticity, lowest, highest)
+            return Row(key, value, "", slope, scatter, elasticity, lowest, highest)
         if (limits := keys[key].limits) is not None and limits.sides == 1:
             lowest = lowest if lowest >= limits.low else -np.inf  # no ridge comes or goes at a value that is allowed
             highest = highest if highest <= limits.high else np.inf
-        return Row(key, value, keys[key].unit, slope, elasticity, lowest, highest)
+        return Row(key, value, keys[key].unit, slope, scatter, elasticity, lowest, highest)
 
     return sorted((row(*each) for each in found["slopes"][quantity].items()), key=lambda row: -abs(row.elasticity))
 
@@ -92,6 +94,7 @@ def dataset(result: ResultData, quantity: str = "mu_app", state: str = "") -> "x
     words = {
         "value": "value of the number in the scene",
         "slope": f"derivative of {quantity}",
+        "scatter": "change of the derivative where points in contact stay as they are",
         "elasticity": "per cent of the quantity for one per cent of the number",
         "lowest": "value down to which the same ridges touch, by straight extrapolation",
         "highest": "value up to which the same ridges touch, by straight extrapolation",
