@@ -41,8 +41,9 @@ from fingerpad.scene import Scene, from_data, load
 from geometry.mesh import TaggedMesh
 from geometry.profiles import Profiles
 from variational.body import Body
+from variational.numbers import Numbers
 from variational.roughness.closure import air_gaps
-from variational.sensitivity import Linearised, Numbers, Varied
+from variational.sensitivity import Linearised, Varied
 from variational.solvers.layout import RigidRimLayout
 from variational.solvers.state_snapshot import StateSnapshot, take_snapshot
 from variational.solvers.transfer import restore
@@ -87,15 +88,15 @@ class Enriched(Linearised):
     def change(self, gaps: bool = True, inverse: Inverse | None = None) -> float:
         """Return by how much a step changes friction, of air gaps too or held ones, by the factorisation or another."""
         self._charged, self._inverse, problem = gaps, inverse, self.problem
-        voltage, closure = float(problem.voltage.value), self.coupling.closure
-        numbers = Numbers(problem._solids, problem.interface, closure, self.solver.control, voltage)
-        return float(self._by({"": lambda part: numbers})[""].by_step["mu_app"])
+        load = self.coupling.closure, self.solver.control, float(problem.voltage.value)
+        numbers = Numbers(problem._solids, problem.interface, *load, problem.mesh.geometry.x.copy())
+        return float(self._by({"": lambda part: numbers})[""].stair["mu_app"])
 
     def _fixed(self, varied: Varied) -> Any:
         f, pressures = self.solver.layout.create_vector(), self._pressures(self._skin)
         self.solver.equations.residual(self.solver.x, f)
         gaps = air_gaps(self.coupling.closure, pressures) - self.coupling.d_eq  # type: ignore[arg-type]
-        return SimpleNamespace(residual=f.array_r.copy(), skin=0.0, gaps=gaps, explicit=np.empty(0))
+        return SimpleNamespace(residual=f.array_r.copy(), skin=0.0, gaps=gaps, explicit=0.0)
 
     def _solve(self, right: list[np.ndarray]) -> list[np.ndarray]:
         return [-self._inverse(each) for each in right] if self._inverse else super()._solve(right)
@@ -146,7 +147,7 @@ def of_mesh(model: FingerModel, state: State) -> tuple[dict[str, float], StateSn
     begin, (tagged, body) = time.process_time(), made(model, "P3", 8)
     restore(snapshot, body.coupling, state.direction * SLIDE_ON)
     moved = friction(body) - mu
-    linear = Enriched(body.coupling, lambda skin, bone: {"mu_app": friction(body, skin)})
+    linear = Enriched(body.coupling, lambda skin, loads, bone: {"mu_app": friction(body, skin)})
     found["cubic"] = moved + linear.change()
     found["adjoint"] = time.process_time() - begin
     found["gaps held"] = moved + linear.change(gaps=False)
@@ -169,7 +170,6 @@ def whole(scene: Mapping[str, Any]) -> dict[str, Any]:
     return {"path": on_path, "final": on_final, "known": known}
 
 
-# -- numbers and page ----------------------------------------------------------------------------------------
 def compute(args: argparse.Namespace) -> None:
     """Solve the scenes that are not kept yet, and keep their numbers."""
     found = harness.solve("benchmarks.adjoint_errors", cases(), args.out.parent / "adjoint_errors", args.jobs, LIMIT)
