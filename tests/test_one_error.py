@@ -46,7 +46,7 @@ def answers(scene, result, folder, key: str) -> dict[str, str]:
     if key in ("mu_app", "f_t"):
         target = {key: result.finger.values(SLIP)[key]}
         solution = fp.solve(scene, between=[0.9 * scene.voltage, 1.1 * scene.voltage], **target)
-        found["solve"] = shown(*solution.roots[0].number[:2])
+        found["solve"] = shown(*solution.roots[0].numbers[0][:2])
         assert found["solve"] in str(solution)
     for words, text in {"printed": str(result), "sweep": str(swept)}.items():
         found[words] = found["result"] if found["result"] in text else text

@@ -14,7 +14,8 @@ from fingerpad.model.cautions import examine
 from fingerpad.reduced.cylinders import Cylinders
 from fingerpad.results.quantities import FINGER, QUANTITIES, Output
 from fingerpad.runs import inverse
-from fingerpad.runs.roots import axis
+from fingerpad.runs.roots import Axis
+from fingerpad.runs.solve import MODELS
 from fingerpad.runs.sweep import sweep
 from fingerpad.runs.sweep_columns import head_of, printed
 from fingerpad.runs.sweep_results import Sweep
@@ -94,7 +95,7 @@ def _over(args: Any, scene: Scene) -> dict[str, list[Any]]:
             raise SceneError(f"--over is {clip(text) or 'empty'}; write it as --over voltage or --over voltage=0:200:5")
         if key in found:
             raise SceneError(f"--over {clip(key)} is given, and its values are given already; give all in one")
-        found[key] = ranges.read(f"--over {key}", values) if equals else axis(scene, key).spread(_COUNT)
+        found[key] = ranges.read(f"--over {key}", values) if equals else Axis.of(scene, key).spread(_COUNT)
     if {"force", "f_ext"} <= found.keys():
         raise SceneError("--force is given and --f-ext too; give newtons on the whole finger or N/m at its centre")
     here = "f_ext" if scene.force is None else "force"
@@ -176,28 +177,42 @@ def solve(argv: Sequence[str]) -> int:
     """Find the values of a key; return the exit code."""
     parser = Parser("solve", _SOLVE)
     parser.add_scene()
-    words = "at full slip, as mu_app=0.4 or 'f_t=0.3 N'"
+    words = "at full slip, as mu_app=0.4 or 'f_t=0.3 N'; as many as keys"
     parser.add_argument("--target", action="append", default=[], metavar="QUANTITY=VALUE", help=words)
-    words = "the target is a multiple of the value without voltage: mu_app=2 is twice the friction"
+    words = "the targets are multiples of values without voltage: mu_app=2 is twice the friction"
     parser.add_argument("--relative", action="store_true", help=words)
-    parser.add_argument("--over", default="voltage", metavar="KEY", help="key that is varied (default: %(default)s)")
-    parser.add_argument("--from", dest="low", metavar="VALUE", help="first value of the key, also with a unit")
-    parser.add_argument("--to", dest="high", metavar="VALUE", help="last value of the key, also with a unit")
+    words = "key that is varied (default: voltage); may be given again"
+    parser.add_argument("--over", action="append", default=[], metavar="KEY", help=words)
+    words = "value of another key for each target in order, as voltage=0,200; one --at for each key"
+    parser.add_argument("--at", action="append", default=[], metavar="KEY=RANGE", help=words)
+    words = "value of the key, also with a unit; of several keys in order"
+    parser.add_argument("--from", action="append", default=[], dest="low", metavar="VALUE", help=f"first {words}")
+    parser.add_argument("--to", action="append", default=[], dest="high", metavar="VALUE", help=f"last {words}")
+    words = "full: from the closed form on by whole runs (default: %(default)s)"
+    parser.add_argument("--model", choices=MODELS, default=Cylinders.name, help=words)
     args = parser.read(argv)
-    if len(args.target) != 1:
-        given = "no --target is given" if not args.target else f"--target is given {len(args.target)} times"
-        raise SceneError(f"{given}; give one quantity and its value, as --target mu_app=0.4")
-    name, equals, value = (part.strip() for part in args.target[0].partition("="))
-    if not (name and equals and value):
-        raise SceneError(f"target is {show(args.target[0])}; give a quantity and its value, as --target mu_app=0.4")
-    if (args.low is None) != (args.high is None):
-        raise SceneError(f"one of --from and --to is given without the other; give both, or none for {clip(args.over)}")
-    between = None if args.low is None else [_number(args.low), _number(args.high)]
-    if name in inspect.signature(inverse.solve).parameters:
-        raise SceneError(f"target is {show(args.target[0])}; {name} is no quantity, such as mu_app")
-    options: dict[str, Any] = {"relative": args.relative, "between": between, name: _number(value)}
-    echo(str(inverse.solve(scene_of(args, meshed=False), args.over, **options)))
+    over, targets = args.over or ["voltage"], dict[str, list[float | str]]()
+    for name, value in _pairs("target", args.target, "a quantity and its value, as --target mu_app=0.4"):
+        if name in inspect.signature(inverse.solve).parameters:
+            raise SceneError(f"target is {show(f'{name}={value}')}; {name} is no quantity, such as mu_app")
+        targets.setdefault(name, []).append(_number(value))
+    if len(args.low) != len(args.high) or len(args.low) not in (0, len(over)):
+        raise SceneError(f"one of --from and --to is given without the other; give both, or none for {clip(over[0])}")
+    between: list[Any] = [[_number(low), _number(high)] for low, high in zip(args.low, args.high, strict=True)]
+    at = {key: ranges.read(f"--at {key}", text) for key, text in _pairs("at", args.at, "a key and its values")}
+    options: dict[str, Any] = {"relative": args.relative, "model": args.model, "at": at, **targets}
+    options["between"] = between if len(over) > 1 else between[0] if between else None
+    echo(str(inverse.solve(scene_of(args, meshed=False), over, **options)))
     return 0
+
+
+def _pairs(option: str, given: Sequence[str], what: str) -> list[tuple[str, str]]:
+    """Return the two sides of each text of an option."""
+    found = [tuple(part.strip() for part in text.partition("=")[::2]) for text in given]
+    for text, (name, value) in zip(given, found, strict=True):
+        if not (name and value):
+            raise SceneError(f"{option} is {show(text)}; give {what}")
+    return found  # type: ignore[return-value]
 
 
 def _number(text: str) -> float | str:
