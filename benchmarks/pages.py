@@ -19,6 +19,7 @@ ROOT = Path(__file__).resolve().parents[1]
 # Each has a function draw(docs), which writes the page's files into a folder and returns the path of the page.
 PAGES = {
     "accuracy": "benchmarks.accuracy",
+    "adjoint_errors": "benchmarks.adjoint_errors",
     "assumptions": "benchmarks.assumptions",
     "calibrate": "benchmarks.calibrate",
     "chart": "benchmarks.chart",
@@ -35,6 +36,7 @@ PAGES = {
     "peers": "benchmarks.peers.__main__",
     "performance": "benchmarks.performance",
     "presses": "benchmarks.presses",
+    "sensitivities": "benchmarks.sensitivities",
     "stability": "benchmarks.stability.__main__",
     "two_meshes": "benchmarks.two_meshes",
     "verification": "benchmarks.verification.case",
