@@ -195,7 +195,7 @@ class Linearised:
         f, x = solver.layout.create_vector(), solver.x.copy()
         sizes = [solver.layout.local_size, _stack(self._skin).size, len(p_c)]
         up, down = varied(STEP), varied(-STEP)
-        moves = not np.array_equal(up.places, down.places)
+        moves = any(self.problem.mesh.comm.allgather(not np.array_equal(up.places, down.places)))
         part = None if moves or up.solids != down.solids else self._on_skin
         depends = moves or self.problem.interface.adhesion is not None
 
