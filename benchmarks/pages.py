@@ -36,6 +36,7 @@ PAGES = {
     "peers": "benchmarks.peers.__main__",
     "performance": "benchmarks.performance",
     "presses": "benchmarks.presses",
+    "sensitivities": "benchmarks.sensitivities",
     "stability": "benchmarks.stability.__main__",
     "two_meshes": "benchmarks.two_meshes",
     "verification": "benchmarks.verification.case",

@@ -1,35 +1,40 @@
 """What moves friction: slopes of the default and the fitted finger, beside whole solves, and how smooth they are.
 
-environment/run python3 -m benchmarks.sensitivities     prints them; some 40 minutes
+environment/run python3 -m benchmarks.sensitivities [--jobs 2] [--draw]     some ten minutes of processor time a case
+python3 -m benchmarks.sensitivities CASE LIMIT     JSON of a scene, prints JSON
 
 On the final mesh of each run, at full slip, the state is solved for again as a whole with other numbers. A small change
 to both sides, within which no point comes into contact or leaves it, shows the exact slope of the stair. A cubic
-through wide changes is what a designer means. Answers are kept in ``results/sensitivities``.
+through wide changes is what a designer means. Writes docs/sensitivities.json and docs/sensitivities.md.
 """
 
+import argparse
 import json
 import sys
 import time
 from collections.abc import Mapping
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from benchmarks.harness import parser, solve
+from benchmarks import harness
 
-DERJAGUIN = {"law": "Derjaguin", "mu_f": 0.2, "tau_0": 2e3}
 CASES: dict[str, Any] = {f"default, {volts:g} V": {"voltage": volts} for volts in (200.0, 100.0, 0.0)}
+DEFAULT, HALVED = "default, 200 V", "default, 200 V, facets half as long"
+CASES |= {HALVED: {"voltage": 200.0, "mesh": {"contact": 5e-6}}}
 CASES |= {f"fitted, {volts:g} V": {"finger": "fitted", "voltage": volts} for volts in (200.0, 100.0, 0.0)}
-CASES |= {"default, 200 V, elements half as large": {"voltage": 200.0, "mesh": {"contact": 5e-6}}}
-CASES |= {"default with a shear stress, 200 V": {"voltage": 200.0, "friction": DERJAGUIN}}
+FINGERS = ("default, 100 V", "fitted, 200 V", "fitted, 100 V")
 LAYER = "materials.stratum_corneum"
 KEYS = (
-    "f_ext", "voltage", "friction", "friction.mu_f", "friction.tau_0", "roughness.young", "roughness.h_rms",
+    "f_ext", "voltage", "friction", "roughness.young", "roughness.h_rms",
     "roughness.wavelength", "electric.d_i", "electric.eps_i", f"{LAYER}.shear_modulus", f"{LAYER}.alpha",
-    "materials.dermis.shear_modulus", "geometry.ridge_amplitude", "geometry.sc_thickness",
+    "materials.dermis.shear_modulus", "geometry.ridge_amplitude",
+    "geometry.ridge_wavelength", "geometry.sc_thickness",
 )  # fmt: skip
-PART = 2.5e-6  # of a number to both sides, for exact slopes
+PART = 2.5e-6  # of a number to both sides, for exact slopes; also twice as much where two do not agree
+_AGREES = 1e-6
 WIDE = {"voltage": 2e-3, "friction": 2e-3}  # of a number, four times to both sides
 BEHIND = 3e-3  # m, of the anchors of friction, so that no point can stick
 NUMERICS = {"tolerance": 1e-12, "coupling_tolerance": 1e-11}
@@ -90,12 +95,19 @@ def _compared(model: Any, finger: Any, number: int, slopes: Any) -> dict[str, An
     def slope(of: Any, key: str) -> np.ndarray:
         return np.array([of[name][key] * slopes.values[key] for name in OF])
 
+    def quotient(key: str, part: float) -> tuple[np.ndarray, int]:
+        (more, came), (less, went) = at(key, part), at(key, -part)
+        return np.subtract(more, less) / (2 * part), came + went
+
     apart, wide = {}, {}
     keys = [key for key in KEYS if key in slopes.values and np.all(np.abs(slope(slopes.slopes, key)) > LEAST)]
     for key in keys:
-        (more, came), (less, went) = at(key, PART), at(key, -PART)
-        relative = np.subtract(more, less) / (2 * PART) / slope(slopes.stairs, key) - 1
-        apart[key] = {"points": came + went, **dict(zip(OF, relative.tolist(), strict=True))}
+        near, points = quotient(key, PART)
+        relative = near / slope(slopes.stairs, key) - 1
+        if abs(relative[0]) > _AGREES and not points:  # of fourth order, by Richardson's extrapolation
+            far, points = quotient(key, 2 * PART)
+            relative = (4 * near - far) / 3 / slope(slopes.stairs, key) - 1
+        apart[key] = {"points": points, **dict(zip(OF, relative.tolist(), strict=True))}
         print(key, apart[key], file=sys.stderr, flush=True)
     for key in (key for key in WIDE if key in keys):
         parts = WIDE[key] * np.arange(-4, 5)
@@ -110,35 +122,47 @@ def _compared(model: Any, finger: Any, number: int, slopes: Any) -> dict[str, An
     return {"apart": apart, "wide": wide}
 
 
-def main() -> int:
-    """Compute the cases that are missing, and print them; or one case, for :func:`benchmarks.harness.solve`."""
+def show(elasticity: float) -> str:
+    """Return an elasticity for a page; 0 where it is roundoff."""
+    return f"{elasticity:.2g}".replace("-", "−") if abs(elasticity) > 1e-9 else "0"
+
+
+# -- numbers -------------------------------------------------------------------------------------------------
+def compute(args: argparse.Namespace) -> None:
+    """Solve the cases that are not kept yet, and keep their numbers."""
+    found = harness.solve("benchmarks.sensitivities", CASES, args.out, args.jobs, LIMIT)
+    harness.keep("sensitivities", {name: found[name] for name in CASES}, harness.made(), args.docs)
+
+
+def draw(docs: Path) -> Path:
+    """Put the numbers in place in docs/sensitivities.md."""
+    cases = {name: case for name, case in harness.kept("sensitivities", docs).numbers.items() if "failure" not in case}
+    slopes = {name: {row["number"]: row["elasticity"] for row in case["rows"]} for name, case in cases.items()}
+
+    def by(number: str, name: str = DEFAULT) -> float:
+        return slopes[name].get(number, 0.0)
+
+    def apart(quantity: str) -> list[float]:
+        """Return the relative distances of exact slopes from whole solves in which no point came or went."""
+        every = (each for case in cases.values() for each in case["apart"].values())
+        return [abs(each[quantity]) for each in every if not each["points"]]
+
+    def wide(name: str, key: str, way: str, quantity: str = "mu_app") -> float:
+        """Return by how many per cent a slope is off the one between whole solves over a wide range."""
+        each, k = cases[name]["wide"][key], OF.index(quantity)
+        return 100 * (each[way][k] / each["chord"][k] - 1)
+
+    order = sorted(slopes[DEFAULT], key=lambda key: -abs(by(key)))
+    cost = {name: case["seconds"] / case["run"] for name, case in cases.items()}
+    pairs = [(name, key) for name, case in cases.items() for key in case["wide"]]
+    names = {"by": by, "apart": apart, "wide": wide, "order": order, "cost": cost, "cases": cases, "pairs": pairs}
+    return harness.page(docs, "sensitivities", "python3 -m benchmarks.sensitivities", globals() | names)
+
+
+if __name__ == "__main__":
     if len(sys.argv) > 2 and not sys.argv[1].startswith("-"):
         import fingerpad.startup  # noqa: F401
 
         print(json.dumps(whole(json.loads(sys.argv[1]))))
-        return 0
-    args = parser(__doc__, "sensitivities").parse_args()
-    for name, case in solve("benchmarks.sensitivities", CASES, args.out, args.jobs, LIMIT).items():
-        if "failure" in case:
-            continue
-        cost = f"slopes took {case['seconds']:.3g} of {case['run']:.3g} processor s"
-        print(f"\n{name}: µ_app {case['mu_app']:.6g}, {case['unknowns']} unknowns; {cost}.")
-        print(
-            "Elasticity (% for 1 %); exact slopes of µ_app and the contact length, relative distance from whole solves:"
-        )
-        for row in case["rows"]:
-            apart = case["apart"].get(row["number"], {})
-            words = "".join(f" {apart[name]:9.1e}" for name in OF) + f", {apart['points']} points" if apart else ""
-            print(f"  {row['number']:42s} {row['elasticity']:10.6f} {words}")
-        for key, each in case["wide"].items():
-            pairs = zip(OF, each["chord"], each["slope"], each["stair"], strict=True)
-            parts = (
-                f"{of} {chord:.5g}, slope {a / chord - 1:+.1%}, one stair {b / chord - 1:+.1%}"
-                for of, chord, a, b in pairs
-            )
-            print(f"  between whole solves over ±{4 * WIDE[key]:.1%} of {key}: {'; '.join(parts)}")
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    else:
+        sys.exit(harness.main(__doc__, compute, draw, out="sensitivities"))

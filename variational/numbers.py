@@ -36,7 +36,7 @@ def impose(coupling: Coupling, numbers: Numbers) -> None:
         ValueError: a law is of another kind than before.
     """
     problem = coupling.solver.problem
-    if not np.array_equal(problem.mesh.geometry.x, numbers.places):
+    if any(problem.mesh.comm.allgather(not np.array_equal(problem.mesh.geometry.x, numbers.places))):
         problem.mesh.geometry.x[:] = numbers.places
         problem.surface.follow()
     problem.set_interface(numbers.interface)

@@ -52,7 +52,7 @@ STEP = 1e-5
 _OF_MOVE = 1e-3  # largest part of a change of the state, of the difference quotients of quantities
 _MOVE = 3e-12  # m, by which the augmented gap of a point near the contact moves in those of quantities
 _NEAR = 1e-7  # m, augmented gap of such a point at most
-_SLIPS = -0.5  # guess: a point whose trial traction is above half its limit slips on
+_BEHIND = 3e-3  # m, of anchors, so that no point comes near sticking; full slip does not depend on them
 _HISTORY = {"anchor", "pressure", "x"}  # on which full slip does not depend
 _VALUES = [f.name for f in fields(SurfaceState) if f.name != "history"]
 
@@ -129,7 +129,9 @@ class Linearised:
         self.coupling, self.measure = coupling, measure
         self.solver, self.problem, self.observer = coupling.solver, coupling.solver.problem, coupling.observer
         problem = self.problem
-        self._place, self._guess = AcceptedState.of(coupling), float(problem.guess.value)
+        self._place = place = AcceptedState.of(coupling)
+        anchor = place.history["anchor"] + np.sign(place.reaction[0]) * _BEHIND
+        self._slid = replace(place, history={**place.history, "anchor": anchor})
         self._charged = coupling.closure is not None and float(problem.voltage.value) != 0.0
         self._du = fem.Function(problem.V)
         ways = [(problem.w, self._du)]
@@ -148,8 +150,7 @@ class Linearised:
             self._by_gaps = fem.form(by_gaps, jit_options=jit.OPTIONS)
         on_skin = [each for each in problem.weak[0].integrals() if each.integral_type() == "exterior_facet"]
         self._on_skin = fem.form(ufl.Form(on_skin), jit_options=jit.OPTIONS)
-        problem.guess.value = _SLIPS
-        self.solver.equations.to_fields(self.solver.x)
+        self._slid.restore(coupling)
         self._factorise()
 
     def _factorise(self) -> None:
@@ -169,7 +170,6 @@ class Linearised:
     def _leave(self) -> None:
         """Leave the state as it was."""
         self._place.restore(self.coupling)
-        self.problem.guess.value = self._guess
         self._ksp.destroy()
         self._K.destroy()
 
@@ -195,7 +195,7 @@ class Linearised:
         f, x = solver.layout.create_vector(), solver.x.copy()
         sizes = [solver.layout.local_size, _stack(self._skin).size, len(p_c)]
         up, down = varied(STEP), varied(-STEP)
-        moves = not np.array_equal(up.places, down.places)
+        moves = any(self.problem.mesh.comm.allgather(not np.array_equal(up.places, down.places)))
         part = None if moves or up.solids != down.solids else self._on_skin
         depends = moves or self.problem.interface.adhesion is not None
 
@@ -311,7 +311,7 @@ class Linearised:
             right.append(f.array_r.copy())
         fixed = {key: self._fixed(numbers) for key, numbers in varied.items()}
         impose(self.coupling, next(iter(varied.values()))(0.0))
-        self._place.restore(self.coupling)
+        self._slid.restore(self.coupling)
         solved = self._solve([*right, *(each.residual for each in fixed.values())])
         B, of_numbers = solved[: len(unit)], dict(zip(fixed, solved[len(unit) :], strict=True))
         count, pairs = len(unit), zip(B, unit, strict=True)
