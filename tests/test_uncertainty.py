@@ -1,7 +1,9 @@
 """What the spread of friction comes from: Sobol's indices of functions with known ones, and of the default finger."""
 
 import csv
+import math
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,6 +12,8 @@ import fingerpad as fp
 from fingerpad import cli
 from fingerpad.cli import uncertainty
 from fingerpad.cli.uncertainty import Study, indices
+from tests.runs import no_pictures
+from tests.small_finger import NINE
 
 GROUPS = ("one", "two", "three")
 
@@ -56,6 +60,7 @@ def test_groups_and_steps_of_a_linear_model(salib):
     for key in ("first", "total"):
         expected = {"line": line / (line + steps), "steps": steps / (line + steps)}
         assert by_name(found, key) == pytest.approx(expected, abs=0.02)
+    assert by_name(found, "uncertainty") == pytest.approx({"line": line**0.5, "steps": steps**0.5}, abs=0.02)
     with pytest.raises(fp.SceneError, match="the same for all fingers"):
         indices(lambda points: 0 * points[:, 0], GROUPS, 8)
 
@@ -91,15 +96,39 @@ def test_command(salib, tmp_path, capsys, monkeypatch):
     assert shown[0] == 0 and shown == sorted(shown) and len(set(shown)) > 10
     rows = list(csv.DictReader((tmp_path / "a.csv").read_text().splitlines()))
     assert [row["factor"] for row in rows[:2]] == ["people", "people: friction"]
-    assert {row["factor"] for row in rows} > {"rough contact", "friction law", "coating", "solution"}
+    assert {row["factor"] for row in rows} > {"rough contact", "friction law", "coating", "closed form"}
     assert float(rows[0]["total"]) > 0.5 and (tmp_path / "a.png").stat().st_size > 1000
     assert "Friction law: Coulomb, Derjaguin." in capsys.readouterr().out
+
+
+@pytest.mark.slow
+def test_budget_of_a_run_adds_up(salib, tmp_path, monkeypatch):
+    """Numerical parts are its ± and the tolerance; people are their traits by squares; the total is all."""
+    monkeypatch.setattr(indices, "__defaults__", (8,))
+    scene, folder = fp.Scene(**NINE, f_ext=1.0, voltage=60.0, output={"receptors": False}), f"{tmp_path}/run"
+    with no_pictures():
+        result = fp.run(scene, out=folder)
+    assert cli.main(["uncertainty", folder, "--csv", f"{tmp_path}/a.csv"]) == 0
+    rows = list(csv.DictReader((tmp_path / "a.csv").read_text().splitlines()))
+    size, bounds = (
+        {row["factor"]: float(row["uncertainty"]) for row in rows},
+        [row["factor"] for row in rows if not row["total"]],
+    )
+    tolerance, numerical = size["tolerance of the solver"], sum(size[name] for name in bounds[:-1])
+    assert numerical - tolerance == pytest.approx(result.headline.error) and 0 < tolerance < 1e-4 * numerical
+    spreads = [size[name] for name in ("people", "friction law", "rough contact", "coating")]
+    assert size["total"] == pytest.approx(numerical + math.hypot(*spreads))
+    assert size["people"] == pytest.approx(math.hypot(*(size[name] for name in size if name.startswith("people: "))))
+    section = uncertainty._bounds(replace(result, finger=None))
+    assert section["mesh"] + section["penalty"] == pytest.approx(result.full_slip.error.mu_app)
 
 
 def test_refusals(monkeypatch, capsys):
     """Without friction nothing spreads; a missing SALib is a sentence with the way to get it."""
     with pytest.raises(fp.SceneError, match="no friction at full slip"):
         Study(fp.run(fp.Scene(friction=0.0), model="cylinders"))
+    assert cli.main(["uncertainty", "tests", "--set", "voltage=3"]) == 2
+    assert "with the folder of a run" in capsys.readouterr().err
     monkeypatch.setitem(sys.modules, "SALib.analyze.sobol", None)
     assert cli.main(["uncertainty"]) == 2
     assert "needs SALib" in capsys.readouterr().err and uncertainty.POINTS == 256

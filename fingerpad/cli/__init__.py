@@ -21,7 +21,7 @@ COMMANDS = {
     "sweep": "a scene over values of its keys: a table; a stopped sweep continues, and no run is repeated",
     "report": "a run or a sweep as one HTML file; a run's animation or spikes; the closed form as a page with sliders",
     "compare": "tables of measurements beside a run or a sweep: misfit as a ratio, picture",
-    "uncertainty": "what the spread of friction comes from: people, rough contact, friction law, coating; ranked",
+    "uncertainty": "budget of friction: people, rough contact, friction law, coating, and numerical errors of a run",
     "sensitivities": "what moves a run's friction, contact length or pressure: exact slopes by every number; ranked",
     "calibrate": "values of keys of a scene by a table of measurements on fingers: regions, evidence for laws, report",
     "check": "what a run contains, omits and costs, with a picture of its mesh, or the mesh for gmsh; solves nothing",

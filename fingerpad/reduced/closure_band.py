@@ -155,9 +155,12 @@ def _finite(value: float) -> float | None:
     return value if np.isfinite(value) else None
 
 
-def laws_beside(scene: Scene, slip: ContactState) -> tuple[float, Derjaguin]:
-    """Return :func:`laws_like` of a scene's law, at the pressure of its full slip without voltage."""
-    still = _cylinders(scene, slip, scene.closure(), None, 0.0)
+def laws_beside(scene: Scene, slip: ContactState, press: ContactState | None = None) -> tuple[float, Derjaguin]:
+    """Return :func:`laws_like` of a scene's law, at the pressure of its full slip without voltage.
+
+    ``press`` is as in :func:`friction`.
+    """
+    still = _cylinders(scene, slip, scene.closure(), press, 0.0)
     return laws_like(scene.friction_law(), still.f_contact / still.contact_length)
 
 

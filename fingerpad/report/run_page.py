@@ -30,7 +30,7 @@ _PICTURES = {
     "time.png": "What is prescribed, friction force and contact length over time",
     "field.png": "Electric field between one ridge and the screen: upright, as between plates, the law's approximation",
     "footprint.png": "Gross contact (light), ridges (dark) and pressure, slice by slice",
-    "uncertainty.png": "What the spread of friction comes from, by fingerpad uncertainty",
+    "uncertainty.png": "Budget of µ_app: people, models and numerical errors, by fingerpad uncertainty",
     "solid.png": "The finger in three dimensions from its unloaded slices, from below; ridges by mean pressure",
 }
 _FACE = "solid.png"  # on the first screen of a run without states to step through
