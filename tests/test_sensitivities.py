@@ -14,6 +14,7 @@ from mpi4py import MPI
 import fingerpad as fp
 from fingerpad.cli import sensitivities
 from fingerpad.model.options import FingerModel, by_rule, plan
+from fingerpad.model.section import write
 from fingerpad.model.simulation import Simulation
 from fingerpad.model.slopes import state_slopes
 from fingerpad.results.slopes import rows
@@ -235,6 +236,18 @@ def test_frictionless_contact_has_slopes():
         result = fp.run(scene.replace(history=[{"name": "press", "f_ext": 1.0}]))
     found = result.sensitivities("bone_height").slope.sel(number="history[0].f_ext")
     assert found < 0 and result.sensitivities("contact_length").slope.sel(number="history[0].f_ext") > 0
+
+
+def test_finger_of_a_file_has_slopes(tmp_path):
+    """Those of the finger that was written, on another mesh of it, but by the shape, which a file does not tell."""
+    write(from_data(NINE), tmp_path / "nine.msh")
+    scene = {"geometry": {"file": str(tmp_path / "nine.msh")}, "f_ext": 1.0, "voltage": 100.0}
+    with no_pictures():
+        results = [fp.run(from_data({**given, "output": LEAN})) for given in (scene, scene | NINE)]
+    mine, own = (result.sensitivities("mu_app").slope for result in results)
+    assert "geometry.ridge_amplitude" in own.number and "geometry.ridge_amplitude" not in mine.number
+    for key in ("voltage", f"{LAYER}.poisson", "electric.d_i"):
+        assert mine.sel(number=key) == pytest.approx(float(own.sel(number=key)), rel=1e-2)
 
 
 @pytest.mark.parametrize(

@@ -179,7 +179,8 @@ class FingerModel:
         self.numerics: Numerics = scene.numerics
         self.asked: Mapping[str, float] = {} if scene.accuracy is None else scene.accuracy.tolerances()
         self.given = numbers(scene) if scene.output.sensitivities else {}
-        self._scene = scene.replace(output={"sensitivities": False}) if self.given else None
+        own = scene if self.mesh_file is None else scene.model_copy(update={"mesh": MeshSize()})
+        self._scene = own.replace(output={"sensitivities": False}) if self.given else None
         self.final: MeshSize | None = None
         self.edges: tuple[float, ...] = ()
 

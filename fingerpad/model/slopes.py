@@ -82,10 +82,8 @@ def follower(finger: Finger) -> Callable[[FingerModel], Array]:
     morph = cache(lambda: Morph(finger.profiles.finger, here[:, :2]))
 
     def places(model: FingerModel) -> Array:
-        if model.geometry == finger.profiles.finger:
+        if model.geometry == finger.profiles.finger or model.mesh_file is not None:  # a mesh of one's own stays
             return here
-        if model.mesh_file is not None:
-            raise ValueError("the mesh is that of a file, which does not follow it")
         return np.column_stack([morph().to(model.geometry), here[:, 2]])
 
     return places
