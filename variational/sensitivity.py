@@ -248,15 +248,8 @@ class Linearised:
             function.x.array[surface.pairs[:, 0]] = values[surface.ridge]
             function.x.scatter_forward()
 
-    def _results(self, skin: SurfaceState, length: Array, bone: Array) -> Array:
-        """Return mean contact pressures (Pa), the quantities, and of each ridge how far it is from the next kink.
-
-        Args:
-            skin: values at the Gauss points.
-            length: of the ridges in contact (m).
-            bone: translation (m).
-        """
-        loads = replace(self.observer.ridge_loads(skin), length=length)
+    def _results(self, skin: SurfaceState, loads: RidgeLoads, bone: Array) -> Array:
+        """Return mean contact pressures (Pa), the quantities, and of each ridge how far it is from the next kink."""
         p_c = self._pressures(skin) if self.coupling.by_gap else loads.p_c
         found = self.measure(skin, loads, bone)
         self._names = [*found]
@@ -278,11 +271,12 @@ class Linearised:
 
         def results(part: float) -> Array:
             there = SurfaceState(*(skin + part * change))
-            stair = self.observer.ridge_loads(there).length
-            ends = np.where(self._ends.located, self._length + part * smooth, stair)
+            stair = self.observer.ridge_loads(there)
+            length = np.where(self._ends.located, self._length + part * smooth, stair.length)
             if self.coupling.by_gap:  # the length below the air gap depends on it
                 self.problem.set_air_gaps(d_eq + part * dd)
-            return np.stack([self._results(there, each, self.solver.bone + part * bone) for each in (ends, stair)])
+            both, moved = (replace(stair, length=length), stair), self.solver.bone + part * bone
+            return np.stack([self._results(there, each, moved) for each in both])
 
         found = _quotient(results, step)
         self.coupling.set_air_gaps(d_eq)
