@@ -159,8 +159,18 @@ def draw(docs: Path) -> Path:
 
     order = sorted(slopes[DEFAULT], key=lambda key: -abs(by(key)))
     cost = {name: case["seconds"] / case["run"] for name, case in cases.items()}
-    pairs = [(name, key) for name, case in cases.items() for key in case["wide"]]
-    names = {"by": by, "apart": apart, "wide": wide, "order": order, "cost": cost, "cases": cases, "pairs": pairs}
+    pairs = [(name, key) for name, case in cases.items() for key in case["wide"] if "200" in name]
+    finer = [100 * abs(by(key, HALVED) / by(key) - 1) for key in WIDE]
+    names = {
+        "by": by,
+        "apart": apart,
+        "wide": wide,
+        "order": order,
+        "cost": cost,
+        "cases": cases,
+        "pairs": pairs,
+        "finer": finer,
+    }
     return harness.page(docs, "sensitivities", "python3 -m benchmarks.sensitivities", globals() | names)
 
 

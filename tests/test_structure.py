@@ -37,7 +37,7 @@ def test_no_module_is_long():
         (lambda: sum(len(structure.public(path)) for path in FILES.values()), 904),
         (lambda: structure.longest(FILES)[0], 100),
         (lambda: sum(map(structure.lines, structure.modules("tests").values())), 25_120),
-        (lambda: sum(map(structure.lines, structure.modules("benchmarks").values())), 12_100),
+        (lambda: sum(map(structure.lines, structure.modules("benchmarks").values())), 12_110),
         (lambda: structure.words()[1], 45_000),
     ],
     ids="lines code modules levels typed scene returns lists laws public longest tests benchmarks words".split(),
