@@ -12,6 +12,7 @@ from scipy.spatial import cKDTree
 from fingerpad.scene import Scene
 from geometry import fingertip, sizing, tags
 from geometry.mesh import load
+from geometry.morph import FOLLOWED, Morph
 from geometry.parameters import Fingertip
 from geometry.profiles import GeometryError, Profiles
 from geometry.reflection import HalfMesh
@@ -203,3 +204,20 @@ def test_corner_that_stays_is_told():
         GeometryError, match=r"^the triangle at x = .* mm, y = .* mm has two sides on the skin that can"
     ):
         load(MPI.COMM_WORLD, build)
+
+
+@pytest.mark.parametrize("name", FOLLOWED[:7])
+def test_places_on_curves_follow_them(name):
+    """Onto the curves of the other finger, at the same phase of a ridge; the bone and the nail stay, to roundoff."""
+    now, finger = Profiles(Fingertip()), Fingertip(**{name: 1.01 * getattr(Fingertip(), name)})
+    then, s = Profiles(finger), np.linspace(-12 * MM, 12 * MM, 401)
+    for curve in ("skin", "sc_ve", "ve_d", "d_sub"):
+        places = [
+            p.point(at, getattr(p, curve)(at)) for p, at in ((now, s), (then, s * finger.ridge_wavelength / WAVE))
+        ]
+        assert_allclose(Morph(now.finger, places[0]).to(finger), places[1], rtol=0, atol=1e-15)
+    for still in (
+        now.bone(np.linspace(0, 1.5, 9)),
+        now.point(np.linspace(now.nail_arc, now.half_perimeter, 9), 0.4e-3),
+    ):
+        assert_allclose(Morph(now.finger, still).to(finger), still, rtol=0, atol=1e-15)

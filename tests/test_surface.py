@@ -180,7 +180,6 @@ def test_the_half_of_a_symmetric_contact_has_the_value_of_the_whole():
     assert highest_of(*mirrored) == pytest.approx(highest_of(*whole), rel=1e-12)
 
 
-# -- how the ends of contact move, by the pressure of facets in full contact --------------------------------
 @pytest.mark.parametrize("tilt", [0.0, 0.3])
 def test_ends_of_a_cylinders_contact_move_as_its_pressure_does(tilt):
     """Ends at -49.3 and 50.4 µm on facets of 2 µm, which move by -1 and +2 as the pressure grows."""
@@ -189,16 +188,11 @@ def test_ends_of_a_cylinders_contact_move_as_its_pressure_does(tilt):
     x = edges[:-1, None] + np.diff(edges)[:, None] * (1 + gauss) / 2
 
     def state(part):
-        left, right, scale = -49.3e-6 - part, 50.4e-6 + 2 * part, 1e10 * (1 + 3e4 * part)
-        square = scale * (right - x) * (x - left) * (1 + tilt * x / 60e-6)
-        return SimpleNamespace(x=x, p_n=np.sqrt(np.maximum(square, 0)))
+        at = x * (1 - 4e4 * part)
+        square = (1e10 + 3e14 * part) * (50.4e-6 + 2 * part - at) * (at + 49.3e-6 + part) * (1 + tilt * at / 60e-6)
+        return SimpleNamespace(x=at, p_n=np.sqrt(np.maximum(square, 0)))
 
-    pairs = np.stack([edges[:-1], edges[1:]], axis=1)
-    surface = SimpleNamespace(
-        ends=lambda: np.stack([pairs, 0 * pairs], axis=2), ridge=np.zeros(60, int), ridge_numbers=[0],
-        mesh=SimpleNamespace(comm=MPI.COMM_SELF), weights=weights / 2,
-    )  # fmt: skip
-    ends, h = Ends(surface, state(0.0)), 1e-11
-    change = SimpleNamespace(x=0 * x, p_n=(state(h).p_n - state(-h).p_n) / (2 * h))
-    assert ends.located.all()
-    assert ends.rates(change) == pytest.approx(3.0, rel=2e-3)
+    ends, given = facets(edges, np.zeros_like)[3], {"ridge": np.zeros(60, int), "ridge_numbers": [0]}
+    given |= {"ends": lambda: ends, "mesh": SimpleNamespace(comm=MPI.COMM_SELF), "weights": weights / 2}
+    change = SimpleNamespace(x=-4e4 * x, p_n=(state(1e-11).p_n - state(-1e-11).p_n) / 2e-11)
+    assert Ends(SimpleNamespace(**given), state(0.0)).rates(change) == pytest.approx(3.0, rel=2e-3)

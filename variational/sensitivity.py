@@ -1,4 +1,4 @@
-r"""Exact sensitivities of a state that does not depend on its path: full slip, or contact without friction.
+r"""Sensitivities of a state that does not depend on its path: full slip, or contact without friction.
 
 The unknowns x (displacement, the bone's translation, a mixed element's pressure) and the ridges' air gaps d solve
 
@@ -59,7 +59,7 @@ _VALUES = [f.name for f in fields(SurfaceState) if f.name != "history"]
 
 @dataclass(frozen=True)
 class Slopes:
-    """Derivatives by one number, whose unit step is :attr:`Varied.scale`."""
+    """Derivatives by one number, whose changes are parts of a scale."""
 
     by_step: dict[str, float]
     """Of each quantity, for one scale of the number."""

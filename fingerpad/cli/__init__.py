@@ -22,7 +22,7 @@ COMMANDS = {
     "report": "a run or a sweep as one HTML file; a run's animation or spikes; the closed form as a page with sliders",
     "compare": "tables of measurements beside a run or a sweep: misfit as a ratio, picture",
     "uncertainty": "budget of friction: people, rough contact, friction law, coating, and numerical errors of a run",
-    "sensitivities": "what moves a run's friction, contact length or pressure: exact slopes by every number; ranked",
+    "sensitivities": "what moves a run's friction, contact length or pressure: slopes by its numbers; ranked",
     "calibrate": "values of keys of a scene by a table of measurements on fingers: regions, evidence for laws, report",
     "check": "what a run contains, omits and costs, with a picture of its mesh, or the mesh for gmsh; solves nothing",
     "solve": "the voltage, coating or other key at which friction has a given value, by the closed form, at once",

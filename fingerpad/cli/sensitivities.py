@@ -1,4 +1,4 @@
-"""``fingerpad sensitivities``: what moves a result of a run, by the exact slopes that it was made with."""
+"""``fingerpad sensitivities``: what moves a result of a run, by the slopes that it was made with."""
 
 from collections.abc import Sequence
 from pathlib import Path

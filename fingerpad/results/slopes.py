@@ -52,7 +52,7 @@ def rows(result: ResultData, quantity: str = "mu_app", state: str = "") -> list[
     at, keys = getattr(result.named[name], quantity), by_name(type(result.scene))
 
     def row(key: str, slope: float) -> Row:
-        value, scatter = found["values"][key], abs(slope - found.get("stairs", found["slopes"])[quantity][key])
+        value, scatter = found["values"][key], abs(slope - found["stairs"][quantity][key])
         down, up = (np.inf if end is None else end for end in found["ends"][key])
         elasticity, lowest, highest = slope * value / at if at else np.nan, value - down, value + up
         if key not in keys:
